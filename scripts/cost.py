@@ -99,18 +99,12 @@ def row(study):
 
 def main():
     runs.build()
-    # The speed of the machine is measured anew.
-    cache = runs.WORK / "cost-cache"
-    os.environ["XDG_CACHE_HOME"] = str(cache)
-    for old in cache.glob("tribosweep/*"):
-        old.unlink()
     everything = [*STUDIES, ELASTIC]
     wanted = sys.argv[1:] or [name_of(study) for study in everything]
     rows = [row(study) for study in everything if name_of(study) in wanted]
     large = runs.tribosweep("validate", str(path_of(LARGE)), database="cost-large.db")
     # No path of this machine.
     large = large.replace(f"{runs.WORK}/", "")
-    speeds = json.loads((cache / "tribosweep" / "speed.json").read_text())["entries"]
     runs.write(
         "cost.md",
         "# What a study takes, predicted and measured\n\n"
@@ -119,10 +113,10 @@ def main():
         "`tribosweep validate` predicts the time of a study from three things:\n\n"
         "* **Nodes and steps.** The model of every batch is built, so nodes, time step and the number of steps up to the time\n"
         "  limit are those of the run.\n"
-        "* **The speed of this machine.** All threads advance a small scene for a quarter of a second. The result is kept for a\n"
-        "  day in the user's cache folder. A study of about a second is not worth a measurement; an earlier one or a typical\n"
-        "  speed is taken for it. *Fast* in the table below is the fastest tenth of the measurement. *Slow* is the slower, the more\n"
-        "  other processes disturbed it.\n"
+        "* **The speed.** It is that of the jobs that have finished in the database, whatever their studies and machines. The more\n"
+        "  their times scatter, the wider its range. While fewer than ten jobs have finished, a typical speed is taken: 3 to 12 ns per\n"
+        "  node and step of a thread. The first forecast on a machine is so the widest: the ends of its range differ by a factor of\n"
+        "  about 10 for a study of a hundred jobs, and by a factor of about 5 later. The forecasts below are such first ones.\n"
         "* **When the jobs end.** A job ends when its state is periodic or decays, and nobody knows when that is. Most periodic\n"
         "  jobs end after 0.3 to 1 decay observations (`detection.decay_observation_s`), and stable ones after 1 to 1.7, both\n"
         "  after the ramp of the load. A job that never becomes periodic runs to its limit, which is five observations by default.\n"
@@ -136,10 +130,6 @@ def main():
         + runs.table(
             ["study", "meshes or steps", "jobs", "predicted [s]", "limit [s]", "run [s]", "inside", "share",
              "memory predicted [MB]", "measured [MB]"], rows)
-        + "\nThe speed of this machine on that occasion, in ns per node and step of a thread:\n\n"
-        + runs.table(["scene", "threads", "fast", "slow"],
-                     [[entry["kind"], entry["threads"], f"{entry['fast_ns']:.1f}", f"{entry['slow_ns']:.1f}"]
-                      for entry in speeds])
         + "\nA mesh of 120 × 150 × 100 elements, which is beyond what a sweep is for:\n\n```text\n" + large + "```\n",
     )
 

@@ -1,6 +1,8 @@
 //! Conversions to SI units, and durations in units for a reader.
 
+use serde::Serializer;
 use std::f64::consts::PI;
+use std::time::Duration;
 
 /// Angular speed [rad/s] of `omega_rpm` revolutions per minute.
 pub fn rad_per_s_from_rpm(omega_rpm: f64) -> f64 {
@@ -20,6 +22,14 @@ pub fn duration_text(seconds: f64, decimals: usize) -> String {
         s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
         s => format!("{:.1} days", s / 86_400.0),
     }
+}
+
+/// A duration as a number of seconds, for [`serde`].
+///
+/// # Errors
+/// Those of the serializer.
+pub fn as_seconds<S: Serializer>(duration: &Duration, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_f64(duration.as_secs_f64())
 }
 
 #[cfg(test)]

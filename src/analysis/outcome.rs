@@ -25,6 +25,17 @@ impl Outcome {
     pub fn name(self) -> &'static str {
         self.into()
     }
+
+    /// The name for a reader.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Periodic => "periodic",
+            Self::Decayed => "decayed",
+            Self::NotPeriodic => "not periodic",
+            Self::Completed => "program completed",
+            Self::Unstable => "unstable, without a run",
+        }
+    }
 }
 
 /// The contact regime, from the shares of node-time spent in each state over whole cycles.
@@ -48,5 +59,16 @@ impl Regime {
     /// The name used in tables and CSV.
     pub fn name(self) -> &'static str {
         self.into()
+    }
+
+    /// The name for a reader.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Stable => "stable",
+            Self::StickSlip => "stick–slip",
+            Self::StickSlipSeparation => "stick–slip–separation",
+            Self::SlipSeparation => "slip–separation",
+            Self::Undecided => "undecided",
+        }
     }
 }

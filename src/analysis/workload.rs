@@ -5,21 +5,25 @@ use crate::solver::Model;
 use crate::solver::scheme;
 use crate::spec::{DiskKind, JobSpec, Precision, StabilityMethod, elasticity};
 use crate::stability::Structure;
+use serde::Serialize;
 
 /// What the jobs of one model take.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Workload {
     /// Number of elements of the pin in x, y and z.
     pub elements: [usize; 3],
     /// Number type of the fields.
     pub precision: Precision,
     /// Number of nodes of the pin.
+    #[serde(rename = "nodes")]
     pub pin_nodes: usize,
     /// Whether the pin has the stiffness of a general mesh.
+    #[serde(skip)]
     pub is_general: bool,
     /// Number of nodes of the disk; 0 if it is rigid.
     pub disk_nodes: usize,
     /// Stages of the disk in a time step; 0 if it is rigid.
+    #[serde(skip)]
     pub disk_stages: usize,
     /// Time step \[s\].
     pub time_step_s: f64,

@@ -28,7 +28,7 @@ pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
     let which = if args.all { ExportColumns::All } else { ExportColumns::Plain };
     let of_export = || sweep::columns(which, &[]);
     let text = match (args.tables, args.json) {
-        (true, true) => format!("{:#}\n", files().map(|own| file_as_json(&own)).collect::<Value>()),
+        (true, true) => format!("{:#}\n", json!(files().collect::<Vec<_>>())),
         (true, false) => files().map(|own| file_as_text(&own)).collect::<Vec<_>>().join("\n"),
         (false, true) => format!("{:#}\n", of_export().iter().map(as_json).collect::<Value>()),
         (false, false) => as_text(0, of_export().iter().map(|own| &own.column.head)),
@@ -46,19 +46,9 @@ fn files() -> impl Iterator<Item = FileColumns> {
 }
 
 fn as_json(own: &ExportColumn) -> Value {
-    let mut column = head_as_json(&own.column.head);
+    let mut column = json!(own.column.head);
     column["group"] = own.group.name().into();
     column
-}
-
-fn head_as_json(head: &Head) -> Value {
-    let unit = Some(&head.unit).filter(|unit| !unit.is_empty());
-    json!({ "name": head.name, "unit": unit, "meaning": head.meaning })
-}
-
-fn file_as_json(own: &FileColumns) -> Value {
-    let heads: Value = own.heads.iter().map(head_as_json).collect();
-    json!({ "files": own.files, "lines": own.lines, "columns": heads })
 }
 
 fn file_as_text(own: &FileColumns) -> String {

@@ -3,9 +3,9 @@
 use super::error::CliError;
 use super::output::print;
 use crate::exit;
-use crate::queue::{Clock, Location, examine};
+use crate::publish::table::listed;
+use crate::queue::{Clock, Finding, Location, Queue, examine};
 use crate::sweep;
-use std::fmt::Write;
 
 /// Arguments of `doctor`.
 #[derive(Debug, clap::Args)]
@@ -22,20 +22,18 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         let mut findings = examine(db, Clock::OfDatabase).await?;
         // If it does not open, the first findings say so.
         if args.deep
-            && let Ok(mut queue) = sweep::open_to_read(db.clone()).await
+            && let Ok(queue) = sweep::open_to_read(db.clone()).await
         {
-            findings.extend(sweep::examine_deeply(&mut queue).await);
-            queue.close().await?;
+            let deep = async |queue: &mut Queue| Ok::<_, CliError>(sweep::examine_deeply(queue).await);
+            findings.extend(sweep::with_open(queue, deep).await?);
         }
         Ok::<_, CliError>(findings)
     })?;
-    let width = findings.iter().map(|finding| finding.subject.len()).max().unwrap_or(0);
-    let text = findings.iter().fold(String::new(), |mut text, finding| {
-        let mark = if finding.is_problem { "PROBLEM" } else { "ok" };
-        let _ = writeln!(text, "{mark:7}  {:width$}  {}", finding.subject, finding.text);
-        text
-    });
-    print(&text)?;
+    let line = |finding: &Finding| {
+        let mark = if finding.is_problem { "PROBLEM" } else { "ok     " };
+        [mark.to_owned(), finding.subject.to_owned(), finding.text.clone()]
+    };
+    print(&listed(0, &findings.iter().map(line).collect::<Vec<_>>(), None))?;
     let is_well = findings.iter().all(|finding| !finding.is_problem);
     Ok(if is_well { exit::SUCCESS } else { exit::ERROR })
 }

@@ -26,12 +26,14 @@ pub(crate) fn read(
     db: &Location,
 ) -> Result<(Forecast, Option<Replaced>), CliError> {
     sweep::block_on(async {
-        let mut queue = Queue::open_if_exists(db.clone(), Clock::OfDatabase).await?;
-        let forecast = Forecast::new(plan, queue.as_mut(), threads).await?;
-        let Some(mut queue) = queue else { return Ok((forecast, None)) };
-        let replaced = plan.preview_replacement(&mut queue).await?;
-        queue.close().await?;
-        Ok((forecast, replaced))
+        let Some(queue) = Queue::open_if_exists(db.clone(), Clock::OfDatabase).await? else {
+            return Ok((Forecast::new(plan, None, threads).await?, None));
+        };
+        sweep::with_open(queue, async |queue| {
+            let forecast = Forecast::new(plan, Some(queue), threads).await?;
+            Ok((forecast, plan.preview_replacement(queue).await?))
+        })
+        .await
     })
 }
 
@@ -61,6 +63,9 @@ pub(crate) fn as_text(forecast: &Forecast, db: &Location) -> String {
         }
     });
     lines.push(format!("time      {}", time(forecast)));
+    if forecast.time.is_some() {
+        lines.push(format!("          at {}", speed(forecast)));
+    }
     format!("{}{}\n", table(&forecast.groups), lines.join("\n"))
 }
 
@@ -87,6 +92,14 @@ fn time(forecast: &Forecast) -> String {
         return format!("{range} with {with} here ({} if all jobs run to their limits)", single(limit));
     }
     format!("{range} with {with} here")
+}
+
+/// What the time is based on.
+fn speed(forecast: &Forecast) -> String {
+    match forecast.speed.jobs {
+        0 => "a typical speed: too few jobs have finished in the database".to_owned(),
+        jobs => format!("the speed of {jobs} finished jobs in the database"),
+    }
 }
 
 fn with(threads: usize) -> String {
@@ -182,57 +195,17 @@ pub(crate) fn warn(forecast: &Forecast) {
 pub(crate) fn announce(forecast: &Forecast) {
     warn(forecast);
     if forecast.time.is_some_and(|time| time.limit >= SHORT) {
-        log(format_args!("expected time: {}", time(forecast)));
+        log(format_args!("expected time: {}, at {}", time(forecast), speed(forecast)));
     }
 }
 
 /// The forecast for programs.
 pub(crate) fn as_json(forecast: &Forecast, replaced: Option<&Replaced>, plan: &Plan) -> Value {
-    let seconds = |time: Duration| time.as_secs_f64();
-    let group = |group: &Group| {
-        let workload = &group.workload;
-        json!({
-            "elements": workload.elements,
-            "precision": workload.precision,
-            "nodes": workload.pin_nodes,
-            "disk_nodes": workload.disk_nodes,
-            "jobs": group.jobs,
-            "jobs_together": group.together,
-            "time_step_s": workload.time_step_s,
-            "time_step_limit_s": workload.time_step_limit_s,
-            "is_estimate": workload.is_estimate,
-            "limit_s": group.limit_s,
-            "steps": group.steps,
-            "thread_memory_bytes": group.memory_bytes,
-            "modes_memory_bytes": group.modes_bytes,
-        })
-    };
-    json!({
-        "study": plan.name(),
-        "warnings": plan.study().warnings(),
-        "jobs": forecast.jobs,
-        "database": forecast.known.map(|known| {
-            json!({ "done": known.done, "failed": known.failed, "open": known.open })
-        }),
-        "replaced": replaced.map(|replaced| {
-            json!({
-                "kept": replaced.kept,
-                "new": replaced.new,
-                "dropped": replaced.dropped,
-                "dropped_done": replaced.dropped_done,
-                "cancelled": replaced.cancelled,
-            })
-        }),
-        "groups": forecast.groups.iter().map(group).collect::<Vec<_>>(),
-        "threads": forecast.threads,
-        "memory_bytes": forecast.memory_bytes,
-        "memory_here_bytes": forecast.memory_here_bytes,
-        "results_bytes": forecast.results_bytes,
-        "checkpoints_bytes": forecast.checkpoints_bytes,
-        "time_s": forecast.time.map(|time| {
-            json!({ "low": seconds(time.low), "high": seconds(time.high), "limit": seconds(time.limit) })
-        }),
-    })
+    let mut json = json!(forecast);
+    json["study"] = plan.name().into();
+    json["warnings"] = json!(plan.study().warnings());
+    json["replaced"] = json!(replaced);
+    json
 }
 
 #[cfg(test)]

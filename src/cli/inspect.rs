@@ -3,13 +3,15 @@
 mod several;
 
 use super::error::CliError;
+use super::foreground;
 use super::output::{log, print};
-use super::{foreground, solve};
+use super::show::text;
 use crate::exit;
 use crate::inspect::{self, Inspection, InspectionError, NodeSelector, Options, PageHeader, Trace};
 use crate::publish::value;
 use crate::queue::Location;
-use crate::report::{self, assignment};
+use crate::report::columns::Group;
+use crate::report::{self, RowState, assignment};
 use crate::solver;
 use crate::study::{Origin, Parameter, Preset, Study, is_set_by_presets};
 use crate::sweep::{self, SelectedJob};
@@ -183,7 +185,9 @@ fn inspect_job(
         accuracy: discretisation.to_string(),
     };
     inspect::write(&inspection, folder, &header)?;
-    log(solve::as_text(&inspection.survey.record).trim_end());
+    let done = RowState::Done(Box::new(inspection.survey.record.clone()));
+    let row = sweep::row_of_job(&job.key, &job.spec, done);
+    log(text::of_result(&row, &[Group::Result, Group::Contact], None).trim());
     print(&format!("{}\n", folder.join(inspect::PAGE).display()))?;
     Ok(Ok(()))
 }

@@ -4,7 +4,6 @@ use super::output::wrapped;
 use crate::publish::value::count;
 use crate::queue::ActiveWorkers;
 use crate::sweep::Outlook;
-use crate::worker::Eta;
 use anstyle::{AnsiColor, Style};
 use serde_json::{Value, json};
 
@@ -49,14 +48,12 @@ fn time(outlook: &Outlook) -> String {
 
 /// The outlook for programs.
 pub(crate) fn as_json(outlook: &Outlook) -> Value {
-    let Eta { low, high } = outlook.eta;
-    let seconds = json!({ "low": low.as_secs_f64(), "high": high.as_secs_f64() });
     json!({
         "ended_share": outlook.ended_share(),
         "workers": outlook.alive.workers,
         "worker_threads": outlook.alive.threads,
         "threads_here": outlook.threads_here,
-        "remaining_s": seconds,
+        "remaining_s": outlook.eta,
     })
 }
 
@@ -64,6 +61,7 @@ pub(crate) fn as_json(outlook: &Outlook) -> Value {
 mod tests {
     use super::*;
     use crate::queue::Counts;
+    use crate::worker::Eta;
     use std::time::Duration;
 
     fn outlook(workers: u64, eta_s: u64) -> Outlook {

@@ -38,20 +38,22 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = plan.name();
     report::create_folder(name, &args.out)?;
     sweep::block_on(async {
-        let mut queue = Queue::open_with(db.clone(), Clock::OfDatabase, args.retries.settings()).await?;
-        submit(&plan, &args.priority, Shard::WHOLE, &args.replacement, &mut queue).await?;
-        let mut options = options(&args.threads, &args.checkpoints);
-        let forecast = Forecast::new(&plan, Some(&mut queue), options.threads).await?;
-        forecast::announce(&forecast);
-        if let Some(time) = forecast.time {
-            options.expected_s_per_cost = time.per_cost_s;
-        }
-        let code = work(&mut queue, &Scope::Study(name.to_owned()), options).await?;
-        let content = sweep::read_report(&mut queue, &ReportRequest::of_study(name)).await?;
-        print(&tables::page(&content.rows, &content.view, Quantity::MuStar, name))?;
-        report::write(&mut queue, &content, &args.out.of(name), None).await?;
-        queue.ensure_place().await?;
-        queue.close().await?;
-        Ok(code.max(log_unreadable_rows(&content.rows)))
+        let queue = Queue::open_with(db.clone(), Clock::OfDatabase, args.retries.settings()).await?;
+        sweep::with_open(queue, async |queue| {
+            submit(&plan, &args.priority, Shard::WHOLE, &args.replacement, queue).await?;
+            let mut options = options(&args.threads, &args.checkpoints);
+            let forecast = Forecast::new(&plan, Some(queue), options.threads).await?;
+            forecast::announce(&forecast);
+            if let Some(time) = forecast.time {
+                options.expected_s_per_cost = time.per_cost_s;
+            }
+            let code = work(queue, &Scope::Study(name.to_owned()), options).await?;
+            let content = sweep::read_report(queue, &ReportRequest::of_study(name)).await?;
+            print(&tables::page(&content.rows, &content.view, Quantity::MuStar, name))?;
+            report::write(queue, &content, &args.out.of(name), None).await?;
+            queue.ensure_place().await?;
+            Ok(code.max(log_unreadable_rows(&content.rows)))
+        })
+        .await
     })
 }

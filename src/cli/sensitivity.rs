@@ -9,8 +9,7 @@ use crate::publish::value::count;
 use crate::publish::{Folder, html, markdown};
 use crate::queue::Location;
 use crate::report::{Scalar, sensitivity};
-use crate::study::Study;
-use crate::sweep::{self, Purpose};
+use crate::sweep::{self, Purpose, ReportRequest};
 
 /// Arguments of `sensitivity`.
 #[derive(Debug, clap::Args)]
@@ -32,10 +31,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     };
     let of = args.of.iter().map(scalar).collect::<Result<Vec<_>, _>>()?;
     let (names, rows) = rows::of_studies(&args.studies, db)?;
-    let is_morris = match &names[..] {
-        [name] => is_morris(name, db)?,
-        _ => false,
-    };
+    let request = ReportRequest { studies: names.clone(), ..ReportRequest::default() };
+    let is_morris = sweep::with_queue(db, Purpose::Read, async |queue| request.is_morris(queue).await)?;
     let found = sensitivity::sensitivities(&rows, &of, is_morris);
     if found.iter().all(|one| one.parameters.is_empty()) {
         let title = names.join(", ");
@@ -61,10 +58,4 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     }
     log(format_args!("indices written to {}", path.display()));
     Ok(exit::SUCCESS)
-}
-
-/// Whether the points of a study are a Morris design and no product of one with a grid.
-fn is_morris(name: &str, db: &Location) -> Result<bool, CliError> {
-    let document = sweep::with_queue(db, Purpose::Read, async |queue| sweep::document(queue, name).await)?;
-    Ok(Study::parse_stored(&document, name).is_ok_and(|study| study.is_morris()))
 }

@@ -2,15 +2,15 @@
 
 use super::error::CliError;
 use super::foreground;
-use super::output::{log, print, write_file};
+use super::output::{log, print, terminal_width, write_file};
+use super::show::text;
 use super::warnings;
-use crate::analysis::program::{Hysteresis, Leading};
-use crate::analysis::{self, AboveBand, ElasticDisk, JobObserver, JobRecord, Moment, SlidingStability};
+use crate::analysis::{self, JobObserver, JobRecord, Moment};
 use crate::exit;
-use crate::publish::value::quantity;
-use crate::spec::{FrictionLaw, JobSpec, Scene, Shape};
+use crate::report::RowState;
+use crate::spec::JobSpec;
 use crate::study::{Preset, Study};
-use crate::sweep::History;
+use crate::sweep::{self, History};
 use crate::worker::Interrupt;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -39,7 +39,7 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// Solves the job and prints its figures; nothing is stored.
+/// Solves the job and prints it as `show` does; nothing is stored.
 pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
     let study = Study::load(&args.study)?;
     let spec = study.single_with_preset(args.preset, &args.settings)?;
@@ -58,7 +58,7 @@ pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
     }
     match solved {
         Ok(record) => {
-            print(&if args.json { as_json(&record)? } else { job_line(&spec) + &as_text(&record) })?;
+            print(&if args.json { as_json(&record)? } else { as_text(&spec, record) })?;
             Ok(exit::SUCCESS)
         }
         Err(error) => foreground::exit_code(error),
@@ -92,132 +92,7 @@ fn as_json(record: &JobRecord) -> Result<String, CliError> {
     Ok(serde_json::to_string_pretty(record)? + "\n")
 }
 
-/// The most important inputs of a job.
-fn job_line(spec: &JobSpec) -> String {
-    let Scene { pin, disk, contact, load, holder, .. } = &spec.scene;
-    let mesh = match pin.shape {
-        Shape::Mesh => pin.mesh_words(),
-        Shape::Block | Shape::Cylinder => {
-            let [nx, ny, nz] = pin.elements;
-            format!("{nx} × {ny} × {nz} elements")
-        }
-    };
-    let law = if contact.law == FrictionLaw::Coulomb {
-        String::new()
-    } else {
-        format!(", friction law {}", contact.law.name())
-    };
-    let changes = !spec.scene.program.is_constant();
-    let others = [
-        (!pin.is_plain_block(), ", not an upright block of one material"),
-        (changes, ", a speed or a load that changes in time (the largest is given)"),
-        (!pin.base.is_flat(), ", a base that is not flat"),
-        (contact.layer().is_some(), ", a contact layer"),
-        (!disk.is_plane(), ", a disk that is not plane"),
-        (!holder.is_ideal(), ", a holder that moves"),
-    ];
-    let others: String = others.into_iter().filter_map(|(holds, words)| holds.then_some(words)).collect();
-    format!(
-        "job                    ω = {}, μ = {}, F = {}, E = {}, {mesh}{law}{others}\n",
-        quantity(disk.omega_rpm, "rpm"),
-        quantity(contact.mu, ""),
-        quantity(load.force_n, "N"),
-        quantity(pin.young_modulus_pa, "Pa"),
-    )
-}
-
-/// The most important figures of a record.
-pub(crate) fn as_text(record: &JobRecord) -> String {
-    let frequency =
-        record.frequency_hz.map_or_else(|| "none".to_owned(), |frequency| format!("{frequency:.1} Hz"));
-    let growth = record
-        .growth_rate_per_s
-        .map_or_else(String::new, |rate| format!("growth rate            {rate:.0} 1/s\n"));
-    let disk = record.disk.as_ref().map_or_else(String::new, disk_lines);
-    let end = match record.steps {
-        0 => "without a run".to_owned(),
-        steps => {
-            format!(
-                "after {:.3} ms ({steps} steps of {:.4e} s)",
-                record.simulated_s * 1e3,
-                record.time_step_s
-            )
-        }
-    };
-    let hysteresis = Hysteresis::of(&record.windows).map_or_else(String::new, |found| {
-        let unit = if Leading::of(&record.windows) == Leading::Omega { "rpm" } else { "N" };
-        let windows = record.windows.len();
-        format!(
-            "hysteresis             {:.5} at {:.4} {unit}, of {windows} windows\n",
-            found.difference, found.at
-        )
-    });
-    let sliding = record.stability.as_ref().map_or_else(String::new, sliding_lines);
-    format!(
-        "status                 {} {}\n\
-         regime                 {}\n\
-         mu*                    {:.5} ± {:.5} (at the contact {:.5})\n\
-         frequency              {frequency}\n\
-         {growth}\
-         stick, slip, separated {:.3}, {:.3}, {:.3}\n\
-         N/F                    {:.3} to {:.3}\n\
-         largest normal stress  {:.4} MPa\n\
-         largest slip speed     {:.1} mm/s\n\
-         residuals              energy {:.1e}, identities {:.1e}\n\
-         {hysteresis}{sliding}{disk}",
-        record.outcome.name(),
-        end,
-        record.regime.name(),
-        record.mu_star,
-        record.mu_star_se,
-        record.mu_star_contact,
-        record.stick_share,
-        record.slip_share,
-        record.separated_share,
-        record.n_over_f_min,
-        record.n_over_f_max,
-        record.sigma_n_max_pa * 1e-6,
-        record.slip_speed_max_m_s * 1e3,
-        record.energy_residual,
-        record.identity_residual(),
-    )
-}
-
-/// Who decided the status, and the leading mode of steady sliding.
-fn sliding_lines(stability: &SlidingStability) -> String {
-    let decided = if stability.decided { "the eigenvalues, without a run" } else { "the run" };
-    let leading = stability.modes.first().map_or_else(String::new, |mode| {
-        format!(
-            "leading mode           {:.1} Hz, growth rate {:.1} 1/s, ζ = {:.2e}\n",
-            mode.frequency_hz, mode.growth_rate_per_s, mode.damping_ratio
-        )
-    });
-    let above = match stability.above_band {
-        AboveBand::Nothing => "all modes of the mesh".to_owned(),
-        AboveBand::Damped => format!("up to {:.1} Hz; above, damping wins", stability.band_hz),
-        AboveBand::CoarserRun => {
-            format!("up to {:.1} Hz; above, by a run on a coarser mesh that decayed", stability.band_hz)
-        }
-        AboveBand::NotLookedAt => format!("up to {:.1} Hz; not above", stability.band_hz),
-    };
-    format!("decided by             {decided}\n{leading}looked for modes       {above}\n")
-}
-
-/// The mesh of the elastic disk and the convergence of its contact solves.
-fn disk_lines(disk: &ElasticDisk) -> String {
-    let [columns, rows, layers] = disk.elements;
-    let [along, across, down] = disk.track_element_m.map(|edge| edge * 1e3);
-    format!(
-        "disk                   {columns} × {rows} × {layers} elements in θ, r and z, {along:.2} × {across:.2} × {down:.2} mm \
-         under the track, at most {:.1} mm elsewhere; {} to a step\n\
-         contact solves         {:.1} sweeps, at most {:.0}; residual {:.0e} of the largest force\n",
-        disk.longest_edge_m * 1e3,
-        match disk.stages {
-            1 => "one stage".to_owned(),
-            stages => format!("{stages} stages"),
-        },
-        disk.sweeps_mean,
-        disk.sweeps_max,
-        disk.residual_max,
-    )
+fn as_text(spec: &JobSpec, record: JobRecord) -> String {
+    let row = sweep::row_of_job(&sweep::job_key(spec), spec, RowState::Done(Box::new(record)));
+    text::of_solved(spec, &row, terminal_width())
 }

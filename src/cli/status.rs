@@ -5,10 +5,11 @@ use super::error::CliError;
 use super::output::{self, print};
 use super::{outlook, workers};
 use crate::exit;
+use crate::publish::table::listed;
 use crate::publish::value::count;
-use crate::queue::{Counts, Location, Queue, Scope};
+use crate::queue::{Counts, Location, Queue, Scope, StudySummary};
 use crate::report::overview::overview;
-use crate::report::trouble::{Region, sentences};
+use crate::report::trouble::sentences;
 use crate::report::{JobRow, RowState};
 use crate::sweep::{self, Outlook, Purpose, Trouble};
 use serde_json::{Value, json};
@@ -53,11 +54,8 @@ async fn all_studies(queue: &mut Queue, as_json: bool) -> Result<String, CliErro
     if studies.is_empty() {
         return Ok("no studies yet; submit one with `tribosweep submit STUDY`\n".to_owned());
     }
-    let width = studies.iter().map(|study| study.name.chars().count()).max().unwrap_or(0);
-    let mut text = studies.iter().fold(String::new(), |mut text, study| {
-        let _ = writeln!(text, "{:width$}  {}", study.name, counts_text(study.counts));
-        text
-    });
+    let line = |study: &StudySummary| [study.name.clone(), counts_text(study.counts)];
+    let mut text = listed(0, &studies.iter().map(line).collect::<Vec<_>>(), None);
     text.push_str(&workers::as_text(&queue.workers().await?, output::width()));
     Ok(text)
 }
@@ -76,7 +74,7 @@ async fn one_study(queue: &mut Queue, name: &str, as_json: bool, db: &Location) 
                 sweep::read_growth(queue, name, &rows).await?.map(|found| found.waves_json()).into();
             json["plan"] = plan.state.name().into();
         }
-        json["workers"] = workers::as_json(&workers);
+        json["workers"] = json!(workers);
         return Ok(format!("{json}\n"));
     }
     let Trouble { not_periodic, regions, .. } = trouble;
@@ -132,21 +130,13 @@ fn study_json(name: &str, counts: Counts, outlook: Option<&Outlook>, trouble: &T
             json!({ "job": row.job, "parameters": parameters(row), "error": error })
         })
         .collect();
-    let regions = trouble.regions.largest.iter();
-    let regions: Vec<Value> = regions
-        .map(|Region { jobs, of, place, cause, example }| {
-            json!({
-                "what": cause.what, "jobs": jobs, "of": of, "place": place, "why": cause.why, "example": example
-            })
-        })
-        .collect();
     json!({
         "study": name,
         "jobs": counts_json(counts),
         "outlook": outlook.map(outlook::as_json),
         "not_periodic": trouble.not_periodic,
         "failures": failures,
-        "regions": regions,
+        "regions": trouble.regions.largest,
     })
 }
 
@@ -169,12 +159,7 @@ fn counts_text(counts: Counts) -> String {
 }
 
 fn counts_json(counts: Counts) -> Value {
-    json!({
-        "total": counts.total(),
-        "done": counts.done,
-        "failed": counts.failed,
-        "running": counts.running,
-        "pending": counts.pending,
-        "cancelled": counts.cancelled,
-    })
+    let mut json = json!(counts);
+    json["total"] = counts.total().into();
+    json
 }

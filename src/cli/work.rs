@@ -103,13 +103,11 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 /// The options of a worker without an idle exit.
 pub(crate) fn options(threads: &Threads, checkpoints: &Checkpoints) -> WorkOptions {
     WorkOptions {
-        threads: threads.number(),
-        expected_s_per_cost: sweep::expected_s_per_cost(threads.number()),
         checkpoint_interval: Some(Duration::from_secs_f64(checkpoints.seconds))
             .filter(|interval| !interval.is_zero()),
-        idle_exit: None,
         job_key: Some(sweep::job_key),
         planner: Some(sweep::PLANNER),
+        ..WorkOptions::new(threads.number())
     }
 }
 
@@ -133,18 +131,21 @@ impl Retries {
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     sweep::block_on(async {
         let settings = args.retries.settings().with_lease(args.lease);
-        let options = WorkOptions { idle_exit: args.idle_exit, ..options(&args.threads, &args.checkpoints) };
+        let options = options(&args.threads, &args.checkpoints);
         interruptible(async |interrupt| {
-            let mut queue = if options.idle_exit.is_none() {
+            let queue = if args.idle_exit.is_none() {
                 Queue::open_existing(db.clone(), Clock::OfDatabase, settings).await?
             } else if let Some(queue) = worker::open(db, settings, interrupt, &mut Display::new()).await? {
                 queue
             } else {
                 return Ok(exit::WORK_LEFT);
             };
-            let code = work_and_log(interrupt, &mut queue, &Scope::All, options).await?;
-            queue.close().await?;
-            Ok(code)
+            sweep::with_open(queue, async |queue| {
+                let expected_s_per_cost = sweep::expected_s_per_cost(queue).await?;
+                let options = WorkOptions { idle_exit: args.idle_exit, expected_s_per_cost, ..options };
+                work_and_log(interrupt, queue, &Scope::All, options).await
+            })
+            .await
         })
         .await
     })

@@ -3,7 +3,6 @@
 use super::output::wrapped;
 use crate::publish::value::count;
 use crate::queue::{WorkerPresence, WorkerStatus};
-use serde_json::{Value, json};
 use std::time::Duration;
 
 /// If more workers were lost, only their number is shown.
@@ -79,30 +78,6 @@ fn ago(milliseconds: i64) -> String {
     let seconds = milliseconds.unsigned_abs() / 1000;
     let seconds = if seconds < 600 { seconds } else { seconds / 60 * 60 };
     humantime::format_duration(Duration::from_secs(seconds)).to_string()
-}
-
-/// The workers for programs.
-pub(crate) fn as_json(workers: &[WorkerStatus]) -> Value {
-    let worker = |worker: &WorkerStatus| {
-        json!({
-            "host": worker.host,
-            "process": worker.pid,
-            "threads": worker.threads,
-            "presence": match worker.presence {
-                WorkerPresence::Working => "working",
-                WorkerPresence::Stopping => "stopping",
-                WorkerPresence::Stopped => "stopped",
-                WorkerPresence::Gone => "lost",
-            },
-            "running": worker.running,
-            "finished": worker.finished,
-            "jobs_per_s": worker.jobs_per_s,
-            "taken_back": worker.taken_back,
-            "started_ms": worker.started_ms,
-            "silent_ms": worker.silent_ms,
-        })
-    };
-    workers.iter().map(worker).collect()
 }
 
 #[cfg(test)]

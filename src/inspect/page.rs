@@ -71,7 +71,6 @@ fn lead(inspection: &Inspection, summary: &Summary, header: &PageHeader) -> Vec<
     let mu = number(summary.job.scene.contact.mu);
     let error = significant(record.mu_star_se, 2);
     let frequency = record.frequency_hz.map_or_else(|| "none".to_owned(), |f| format!("{f:.0} Hz"));
-    let regime = record.regime.name().replace('_', "–");
     let shares = [record.stick_share, record.slip_share, record.separated_share];
     let shares = shares.map(|share| format!("{share:.2}")).join(" / ");
     let loops = format!("{} of {}", summary.face.counter_clockwise, summary.face.separating);
@@ -79,7 +78,7 @@ fn lead(inspection: &Inspection, summary: &Summary, header: &PageHeader) -> Vec<
     let tiles = vec![
         Tile::new("μ*", at_place(record.mu_star, place), format!("at μ = {mu}; standard error {error}")),
         Tile::new("frequency", frequency, "of the total normal force"),
-        Tile::new("regime", regime, record.outcome.name().replace('_', " ")),
+        Tile::new("regime", record.regime.label(), record.outcome.label()),
         Tile::new("stick / slip / separated", shares, "shares of the node-time"),
         Tile::new("loops", loops, sense),
     ];

@@ -4,6 +4,7 @@
 //! cells, the command `columns` and the pages of columns come from the same list, and can thus never differ.
 
 use super::value;
+use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 use serde_json::Value;
 use std::borrow::Cow;
@@ -11,14 +12,19 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 /// What a column is called and what it means.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Head {
     /// Its name in the header, unique in its table.
     pub name: Cow<'static, str>,
-    /// The unit of its numbers; empty for text and for numbers without a unit.
+    /// The unit of its numbers; empty for text and for numbers without a unit, and then null in JSON.
+    #[serde(serialize_with = "null_if_empty")]
     pub unit: Cow<'static, str>,
     /// What its values mean.
     pub meaning: Cow<'static, str>,
+}
+
+fn null_if_empty<S: Serializer>(unit: &str, serializer: S) -> Result<S::Ok, S::Error> {
+    if unit.is_empty() { serializer.serialize_none() } else { serializer.serialize_some(unit) }
 }
 
 /// A column of a table whose lines are about a `T`.
@@ -271,13 +277,14 @@ fn broken(words: &str, width: usize, indent: usize) -> String {
 }
 
 /// What a page of columns says about files: their columns, whatever a study varies.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FileColumns {
     /// The files; a word in capitals stands for a name.
     pub files: Vec<String>,
     /// What their lines are, in Markdown.
     pub lines: &'static str,
     /// The columns that they always have.
+    #[serde(rename = "columns")]
     pub heads: Vec<Head>,
 }
 

@@ -3,9 +3,10 @@ use super::error::QueueError;
 use super::handle::Queue;
 use super::scope::Scope;
 use super::state::JobState;
+use serde::Serialize;
 
 /// The number of jobs in each state. A job that several rows of a study point to counts once.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Counts {
     /// Jobs that wait to be claimed.
     pub pending: u64,

@@ -5,11 +5,13 @@ use super::handle::Queue;
 use super::lookup;
 use super::state::JobState;
 use super::unsigned::unsigned;
+use serde::Serialize;
 
 /// Everything about a job.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JobDetails {
     /// Its key.
+    #[serde(rename = "job")]
     pub key: String,
     /// Its state.
     pub state: JobState,
@@ -34,14 +36,19 @@ pub struct JobDetails {
     /// When that attempt ended, in milliseconds since 1970-01-01 UTC.
     pub finished_ms: Option<i64>,
     /// What the result was made with, as its worker declared it.
+    #[serde(skip)]
     pub provenance: Option<String>,
     /// What the executor needs to run the job.
+    #[serde(skip)]
     pub payload: String,
     /// Its result, if it is done.
+    #[serde(skip)]
     pub record: Option<String>,
     /// Whether the result is as it was stored.
+    #[serde(skip)]
     pub integrity: Integrity,
     /// The names of the studies that contain it.
+    #[serde(skip)]
     pub studies: Vec<String>,
 }
 

@@ -101,16 +101,6 @@ pub enum QueueError {
         mode: String,
     },
 
-    /// A process of an earlier version, which does not support several workers, runs jobs.
-    #[error(
-        "an older tribosweep is working on {path}, and its tables are to be brought up to date; \
-         wait for it to end, or stop it first"
-    )]
-    OlderWorking {
-        /// The database file.
-        path: PathBuf,
-    },
-
     /// The tables have to be migrated, and the database is read-only.
     #[error(
         "{path} was written by an older tribosweep (schema {found}; this one needs {needed}) and cannot be written \

@@ -1,5 +1,7 @@
 //! What a submission may do to the study that has its name, and what it does.
 
+use serde::Serialize;
+
 /// Whether a submission may replace the study that has its name. The decision is made in the transaction that replaces it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Replace {
@@ -25,9 +27,10 @@ impl Replace {
 }
 
 /// A study that is replaced by another one of its name, or would be. A job that several rows point to counts once.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Replaced {
     /// The document of the old study.
+    #[serde(skip)]
     pub document: String,
     /// Jobs that both studies have.
     pub kept: u64,

@@ -1,7 +1,9 @@
 use super::error::QueueError;
+use serde::Serialize;
 
 /// The state of a job.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum JobState {
     /// The job waits to be claimed.
     Pending,

@@ -2,13 +2,15 @@ use super::engine::query;
 use super::error::QueueError;
 use super::handle::Queue;
 use super::owner::{Liveness, Owner};
+use serde::Serialize;
 
 /// A worker that is active, or that was lost while it held jobs.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WorkerStatus {
     /// The machine's name.
     pub host: String,
     /// The process number on that machine.
+    #[serde(rename = "process")]
     pub pid: u32,
     /// How many threads it has.
     pub threads: u64,
@@ -29,7 +31,8 @@ pub struct WorkerStatus {
 }
 
 /// Whether a worker is active.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum WorkerPresence {
     /// It is active.
     Working,
@@ -38,6 +41,7 @@ pub enum WorkerPresence {
     /// Its process is stopped (Ctrl-Z, SIGSTOP): it keeps its jobs until it continues or ends.
     Stopped,
     /// Its process has ended, or it has sent no heartbeat for longer than its lease.
+    #[serde(rename = "lost")]
     Gone,
 }
 

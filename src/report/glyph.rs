@@ -23,17 +23,6 @@ const LIGHT: Rgb = Rgb(0xF2, 0xF2, 0xF2);
 pub(super) const SEVERAL_JOBS: StatusGlyph =
     StatusGlyph { letter: '+', meaning: "several jobs", terminal_colour: AnsiColor::White, fill: GREY };
 
-/// The name of a regime for a reader.
-pub(super) fn regime_label(regime: Regime) -> &'static str {
-    match regime {
-        Regime::Stable => "stable",
-        Regime::StickSlip => "stick–slip",
-        Regime::StickSlipSeparation => "stick–slip–separation",
-        Regime::SlipSeparation => "slip–separation",
-        Regime::Undecided => "undecided",
-    }
-}
-
 /// The glyph of a job.
 pub(super) fn status_glyph(row: &JobRow) -> StatusGlyph {
     let glyph =
@@ -50,7 +39,7 @@ pub(super) fn status_glyph(row: &JobRow) -> StatusGlyph {
         RowState::Measured(_) => return glyph('M', "measured", AnsiColor::White, GREY),
     };
     if record.outcome == Outcome::Unstable {
-        return glyph('U', "unstable, without a run", AnsiColor::Red, palette::YELLOW);
+        return glyph('U', record.outcome.label(), AnsiColor::Red, palette::YELLOW);
     }
     if record.outcome == Outcome::Completed {
         return glyph('C', "completed program", AnsiColor::White, GREY);
@@ -64,10 +53,9 @@ pub(super) fn status_glyph(row: &JobRow) -> StatusGlyph {
         Regime::Undecided => ('?', AnsiColor::Red, palette::YELLOW),
     };
     match (record.regime, is_settled) {
-        (regime @ (Regime::Stable | Regime::Undecided), _) => {
-            glyph(letter, regime_label(regime), colour, fill)
+        (regime @ (Regime::Stable | Regime::Undecided), _) | (regime, true) => {
+            glyph(letter, regime.label(), colour, fill)
         }
-        (regime, true) => glyph(letter, regime_label(regime), colour, fill),
         (regime, false) => {
             let meaning = match regime {
                 Regime::StickSlip => "stick–slip, not periodic",

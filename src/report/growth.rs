@@ -1,6 +1,5 @@
 //! What a study that grows has found: boundaries, minima, branches and basins.
 
-use super::glyph::regime_label;
 use super::parameters;
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::publish::table::{Column, FileColumns, Table};
@@ -448,7 +447,7 @@ impl Findings {
 fn kind_in_words(kind: &str) -> String {
     let regimes = [Regime::Stable, Regime::StickSlip, Regime::StickSlipSeparation, Regime::SlipSeparation];
     let regime = regimes.into_iter().find(|regime| regime.name() == kind);
-    regime.map_or_else(|| kind.replace('_', " "), |regime| regime_label(regime).to_owned())
+    regime.map_or_else(|| kind.replace('_', " "), |regime| regime.label().to_owned())
 }
 
 /// Points with all their parameters and what was found there.

@@ -34,8 +34,8 @@ impl FoundInspection {
 /// The part of `inspection.json` that is read.
 #[derive(Deserialize)]
 struct Summary {
-    /// Absent in files of versions that did not store it.
-    key: Option<String>,
+    /// Empty if it is not known.
+    key: String,
 }
 
 /// The inspections below the folder of a report, in its folders and in those of its folder `inspect`, sorted by folder. A
@@ -59,5 +59,5 @@ fn inspection(report_folder: &Path, folder: &Path) -> Option<FoundInspection> {
     let relative = folder.strip_prefix(report_folder).ok()?;
     let parts: Option<Vec<&str>> = relative.iter().map(|part| part.to_str()).collect();
     let has_page = folder.join(PAGE).is_file();
-    Some(FoundInspection { job: summary.key?, folder: parts?.join("/"), has_page })
+    Some(FoundInspection { job: summary.key, folder: parts?.join("/"), has_page })
 }

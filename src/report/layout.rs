@@ -161,7 +161,8 @@ impl<'a> Layout<'a> {
         let rows = self.groups.iter().flat_map(|group| &group.jobs).map(|job| job.row);
         let view = View { x: Some(self.axis.to_owned()), by: Some(by.to_owned()), ..View::default() };
         let mut own = Self::laid_out(rows, &view, false);
-        own.dimensions.extend(self.dimensions.iter().map(|(name, dimension)| (*name, dimension.clone())));
+        let others = self.dimensions.iter().filter(|(name, _)| **name != by);
+        own.dimensions.extend(others.map(|(name, dimension)| (*name, dimension.clone())));
         Some(own)
     }
 
@@ -185,7 +186,8 @@ impl<'a> Layout<'a> {
             let named = constant.iter().filter(|name| !is_placed(name));
             named.map(|&name| (name, row.parameter(name))).collect()
         });
-        let names = [OMEGA, MU, SOURCE].into_iter().chain(further.iter().copied()).chain([axis, by]);
+        let placed = further.iter().chain(&scattered).copied().chain([axis, by]);
+        let names = [OMEGA, MU, SOURCE].into_iter().chain(placed);
         let dimensions = names
             .map(|name| {
                 let description = view.descriptions.get(name).map(String::as_str);
@@ -218,9 +220,11 @@ impl<'a> Layout<'a> {
     }
 
     /// How the values of a parameter are written.
+    ///
+    /// # Panics
+    /// If the layout has no such parameter: another axis in its place would be a wrong figure.
     pub fn dimension(&self, name: &str) -> &Dimension {
-        // Every name of this layout is in the map.
-        self.dimensions.get(name).unwrap_or_else(|| &self.dimensions[OMEGA])
+        self.dimensions.get(name).unwrap_or_else(|| panic!("`{name}` is no parameter of this layout"))
     }
 
     /// Name and unit of the axis.

@@ -14,8 +14,7 @@ pub struct Provenance {
 /// Results of one program on one machine.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ResultGroup {
-    /// The program and the machine; none for results of versions that did not record them, and for jobs whose process
-    /// died.
+    /// The program and the machine; none for jobs whose process died.
     pub build: Option<BuildInfo>,
     /// Number of results.
     pub jobs: u64,

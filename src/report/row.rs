@@ -28,7 +28,7 @@ pub struct JobRow {
     pub state: RowState,
     /// The job's share of the time of its thread \[s\]. Jobs that are advanced together have equal shares.
     pub wall_s: Option<f64>,
-    /// The job's numerics; none in studies submitted by a version that did not store them.
+    /// The job's numerics; none of a measured point, and of a job that is no part of a study.
     pub numerics: Option<JobNumerics>,
     /// What is known about the error of its mesh, time step and detection.
     pub discretisation: Discretisation,

@@ -1,12 +1,11 @@
 //! The text of the tooltip of a job.
 
 use super::digits;
-use super::glyph::regime_label;
 use super::layout::parameters_in_words;
 use super::measurement::MeasuredValue;
 use super::parameters::name_and_unit;
 use super::row::{JobRow, RowState};
-use crate::analysis::{JobRecord, Outcome};
+use crate::analysis::JobRecord;
 use crate::publish::value::{fixed, number, short, significant};
 
 /// Number of characters of a job's key that are shown. They are unique in practice, and `show` accepts them.
@@ -49,22 +48,11 @@ pub(super) fn short_key(row: &JobRow) -> String {
     row.job.chars().take(KEY_LENGTH).collect()
 }
 
-/// The name of an outcome for a reader.
-pub(super) fn outcome_label(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Periodic => "periodic",
-        Outcome::Decayed => "decayed",
-        Outcome::NotPeriodic => "not periodic",
-        Outcome::Completed => "program completed",
-        Outcome::Unstable => "unstable, without a run",
-    }
-}
-
 fn results(row: &JobRow, record: &JobRecord) -> Vec<String> {
     let percent = |share: f64| fixed(100.0 * share, 1);
     let mut lines = vec![
         format!("μ* = {}", digits::mu_star_with_error(row, record)),
-        format!("{}, {}", regime_label(record.regime), outcome_label(record.outcome)),
+        format!("{}, {}", record.regime.label(), record.outcome.label()),
         format!(
             "stick {} %, slip {} %, separated {} %",
             percent(record.stick_share),

@@ -30,6 +30,7 @@ pub enum Purpose {
 }
 
 /// Opens a database, runs `work` with it on this thread, and closes it, for programs without an asynchronous runtime.
+/// [`with_open`] does the same with a database that is open.
 ///
 /// # Errors
 /// Those of [`open`], of `work`, and of closing.
@@ -42,15 +43,26 @@ pub fn with_queue<T, E: From<SweepError>>(
     work: impl AsyncFnOnce(&mut Queue) -> Result<T, E>,
 ) -> Result<T, E> {
     block_on(async {
-        let mut queue = match access {
+        let queue = match access {
             Purpose::Read => open_to_read(database.clone()).await,
             Purpose::Change => open_to_change(database.clone()).await,
             Purpose::Create => open(database.clone()).await,
         }?;
-        let result = work(&mut queue).await?;
-        queue.close().await.map_err(SweepError::from)?;
-        Ok(result)
+        with_open(queue, work).await
     })
+}
+
+/// Runs `work` with a database that is open, and closes it.
+///
+/// # Errors
+/// Those of `work` and of closing.
+pub async fn with_open<T, E: From<SweepError>>(
+    mut queue: Queue,
+    work: impl AsyncFnOnce(&mut Queue) -> Result<T, E>,
+) -> Result<T, E> {
+    let result = work(&mut queue).await?;
+    queue.close().await.map_err(SweepError::from)?;
+    Ok(result)
 }
 
 /// Opens a database; creates it if it does not exist. The location is a path or a [`Location`].
@@ -96,9 +108,8 @@ pub async fn load_study(study: &str, database: &Location) -> Result<Study, Sweep
     if let Some(path) = study_file(study) {
         return Ok(Study::load(path)?);
     }
-    let mut queue = open_to_read(database.clone()).await?;
-    let document = document(&mut queue, study).await?;
-    queue.close().await?;
+    let queue = open_to_read(database.clone()).await?;
+    let document = with_open(queue, async |queue| document(queue, study).await).await?;
     Ok(Study::parse_stored(&document, study)?)
 }
 

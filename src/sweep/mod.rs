@@ -40,14 +40,15 @@ mod trouble;
 mod work;
 
 pub use database::{
-    Purpose, block_on, document, load_study, open, open_to_change, open_to_read, study_name, with_queue,
+    Purpose, block_on, document, load_study, open, open_to_change, open_to_read, study_name, with_open,
+    with_queue,
 };
 pub use deep::{examine_deeply, unreadable_jobs};
 pub use difference::{Difference, InputDifference};
 pub use discretisation::discretisation_of;
 pub use error::SweepError;
 pub use export::{ExportColumns, Unreadable, columns, export, export_windows};
-pub use forecast::{Forecast, Group, Kind, Known, Speed, TimeRange, expected_s_per_cost};
+pub use forecast::{Forecast, Group, Known, Speed, TimeRange, expected_s_per_cost};
 pub use growth::{PLANNER, read_growth};
 pub use history::History;
 #[cfg(feature = "cli")]
@@ -60,7 +61,7 @@ pub use report::{Revision, write_content, write_refreshing_report, write_report,
 pub use request::{ReportContent, ReportRequest, no_such_quantity, read_report};
 pub use rows::{for_each_row, for_each_row_with_inputs, read_rows};
 pub use selection::{
-    SelectedJob, StoredJob, StudyOfJob, find_job, select_all, select_by_key, select_by_parameters,
+    SelectedJob, StoredJob, StudyOfJob, find_job, row_of_job, select_all, select_by_key, select_by_parameters,
 };
 pub use sheet::sheet_of_job;
 pub use stability::{StabilitySweep, WAVES, name_of_modes, natural_way, read_stability, ways_to_thresholds};

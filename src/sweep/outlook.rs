@@ -32,11 +32,13 @@ impl Outlook {
         let alive = queue.active_workers().await?;
         let threads_here = available_threads();
         let threads = if alive.threads > 0 { alive.threads } else { threads_here as u64 };
-        let cost = queue.remaining_cost(&Scope::Study(study.to_owned())).await?;
-        let finished = queue.timings(study).await?;
+        let scope = Scope::Study(study.to_owned());
+        let cost = queue.remaining_cost(&scope).await?;
+        let finished = queue.timings(&scope).await?;
+        let expected = expected_s_per_cost(queue).await?;
         // A second thread does not make a single job faster.
         let threads = threads.min(left) as usize;
-        let eta = Eta::estimate(&finished, expected_s_per_cost(threads_here), cost, left, threads);
+        let eta = Eta::estimate(&finished, expected, cost, left, threads);
         Ok(Some(Self { counts, alive, threads_here, eta }))
     }
 

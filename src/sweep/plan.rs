@@ -260,7 +260,7 @@ fn new_job(
         omega_rpm: job.spec.scene.disk.omega_rpm,
         mu: job.spec.scene.contact.mu,
         grid: job.parameters.clone(),
-        numerics: Some(numerics(&job.spec, cases)),
+        numerics: numerics(&job.spec, cases),
         wave: added.map(|(wave, _)| wave),
         why: added.map(|(_, why)| why.to_owned()),
     };

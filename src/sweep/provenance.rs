@@ -5,9 +5,8 @@ use crate::queue::{ProvenanceGroup, Queue};
 use crate::report::{BuildInfo, Provenance, ResultGroup};
 use serde::Deserialize;
 
-/// The part of a worker's provenance that reports show. Other versions may have stored fewer fields.
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
+/// The part of a worker's provenance that reports show.
+#[derive(Debug, Deserialize)]
 struct StoredProvenance {
     version: String,
     commit: String,

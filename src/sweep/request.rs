@@ -96,6 +96,14 @@ impl ReportRequest {
         self.view(&studies, rows)
     }
 
+    /// Whether the jobs are those of a Morris design, in its order.
+    ///
+    /// # Errors
+    /// If the database cannot be read.
+    pub async fn is_morris(&self, queue: &mut Queue) -> Result<bool, SweepError> {
+        Ok(is_morris(&self.stored(queue).await?))
+    }
+
     async fn stored(&self, queue: &mut Queue) -> Result<Vec<StoredStudy>, SweepError> {
         let mut studies = Vec::new();
         for name in &self.studies {
@@ -155,10 +163,15 @@ impl ReportRequest {
         if let Some((name, _)) = self.scale.iter().find(|(name, _)| !known.contains(&name.as_str())) {
             return Err(no_such_name("--scale", name, &known));
         }
-        let is_morris = matches!(studies, [StoredStudy { study: Some(only), .. }] if only.is_morris());
+        let is_morris = is_morris(studies);
         let notes = different_inputs(studies, &known)?;
         Ok(View { x, by, y, descriptions: descriptions(), is_log, is_morris, notes })
     }
+}
+
+/// Whether there is one study, and its points are a Morris design and no product of one with a grid.
+fn is_morris(studies: &[StoredStudy]) -> bool {
+    matches!(studies, [StoredStudy { study: Some(only), .. }] if only.is_morris())
 }
 
 fn no_such_name(option: &'static str, name: &str, known: &[&str]) -> SweepError {

@@ -21,9 +21,8 @@ pub(super) struct RowParameters {
     pub mu: f64,
     /// The grid parameters, in the study's order.
     pub grid: Vec<(String, Value)>,
-    /// What accuracy and cost depend on; absent in databases of versions that did not store it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub numerics: Option<JobNumerics>,
+    /// What accuracy and cost depend on.
+    pub numerics: JobNumerics,
     /// The wave in which the job was added; absent for jobs of the study's author.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wave: Option<u64>,
@@ -190,7 +189,7 @@ pub(super) fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepErr
         has_one_mu: false,
         state,
         wall_s: row.wall_s,
-        numerics: parameters.numerics,
+        numerics: Some(parameters.numerics),
         discretisation: Discretisation::default(),
         wave: parameters.wave.unwrap_or(0),
         why: parameters.why,

@@ -1,11 +1,11 @@
 //! One job of a study or of a database.
 
-use super::database::{open_to_read, study_file};
+use super::database::{open_to_read, study_file, with_open};
 use super::discretisation::discretisation_of;
 use super::error::SweepError;
 use super::rows::{grid_parameters, job_spec, row_state};
 use crate::queue::{JobDetails, Location, Queue, StudyDocument};
-use crate::report::JobRow;
+use crate::report::{JobRow, RowState};
 use crate::solver;
 use crate::spec::JobSpec;
 use crate::study::{Job, Parameter, Preset, SingleJob, Study, job_key};
@@ -42,10 +42,12 @@ pub async fn select_by_key(
     if study_file(given).is_some() {
         return expanded(study, prefix);
     }
-    let mut queue = open_to_read(database.clone()).await?;
-    let job = only(queue.jobs_in(given, prefix, 2).await?, Some(given), prefix)?;
-    let parameters = queue.parameters(given, &job.key).await?;
-    queue.close().await?;
+    let (job, parameters) = with_open(open_to_read(database.clone()).await?, async |queue| {
+        let job = only(queue.jobs_in(given, prefix, 2).await?, Some(given), prefix)?;
+        let parameters = queue.parameters(given, &job.key).await?;
+        Ok::<_, SweepError>((job, parameters))
+    })
+    .await?;
     let parameters = parameters.map_or_else(|| Ok(Vec::new()), |text| grid_parameters(&job.key, &text))?;
     let spec = job_spec(&job.key, &job.payload)?;
     Ok(SelectedJob { key: job.key, spec, parameters, from_scene: Vec::new() })
@@ -188,23 +190,31 @@ impl StoredJob {
     /// [`SweepError::Unreadable`].
     pub fn row(&self) -> Result<JobRow, SweepError> {
         let JobDetails { key, state, record, error, integrity, wall_s, .. } = &self.details;
-        let spec = self.spec()?;
         let state = row_state(*state, record.as_deref(), error.as_deref(), *integrity);
         Ok(JobRow {
             study: self.studies.first().map(|own| own.study.name.clone()).unwrap_or_default(),
-            job: key.clone(),
-            parameters: Vec::new(),
-            omega_rpm: spec.scene.disk.omega_rpm,
-            mu: spec.scene.contact.mu,
-            has_one_mu: spec.scene.contact.law.has_one_mu(),
-            state,
             wall_s: *wall_s,
-            numerics: None,
-            discretisation: discretisation_of(&spec),
-            wave: 0,
-            why: None,
-            inputs: Vec::new(),
+            ..row_of_job(key, &self.spec()?, state)
         })
+    }
+}
+
+/// A job that is no part of a study, as a row of a report.
+pub fn row_of_job(key: &str, spec: &JobSpec, state: RowState) -> JobRow {
+    JobRow {
+        study: String::new(),
+        job: key.to_owned(),
+        parameters: Vec::new(),
+        omega_rpm: spec.scene.disk.omega_rpm,
+        mu: spec.scene.contact.mu,
+        has_one_mu: spec.scene.contact.law.has_one_mu(),
+        state,
+        wall_s: None,
+        numerics: None,
+        discretisation: discretisation_of(spec),
+        wave: 0,
+        why: None,
+        inputs: Vec::new(),
     }
 }
 

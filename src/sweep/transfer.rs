@@ -1,8 +1,8 @@
 //! Studies with their results from some databases to another.
 
-use super::database::{open, open_to_read};
+use super::database::{open, open_to_read, with_open};
 use super::error::SweepError;
-use crate::queue::{Absorbed, Location, Scope};
+use crate::queue::{Absorbed, Location, Queue, Scope};
 
 /// What one database contributed.
 #[derive(Debug, Clone)]
@@ -35,15 +35,18 @@ pub async fn transfer(
         source.counts(&scope).await?;
         opened.push(source);
     }
-    let mut queue = open(target.clone()).await?;
-    let mut transfers = Vec::new();
-    for mut source in opened {
-        let absorbed = queue.absorb(&mut source, study).await?;
-        transfers.push(Transfer { source: source.location().clone(), absorbed });
-        source.close().await?;
-    }
-    queue.close().await?;
-    Ok(transfers)
+    with_open(open(target.clone()).await?, async |target| {
+        let mut transfers = Vec::new();
+        for source in opened {
+            let absorb = async |source: &mut Queue| {
+                let absorbed = target.absorb(source, study).await?;
+                Ok::<_, SweepError>(Transfer { source: source.location().clone(), absorbed })
+            };
+            transfers.push(with_open(source, absorb).await?);
+        }
+        Ok(transfers)
+    })
+    .await
 }
 
 /// Whether two locations are one database; several paths may lead to a file.

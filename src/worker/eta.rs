@@ -4,16 +4,19 @@
 //! more. So the finished jobs give a mean *and a spread* of seconds per cost, and the estimate is a range. Before any job has
 //! finished, the estimate is what was expected; each finished job makes the expectation count less.
 
-use crate::units::duration_text;
+use crate::units::{as_seconds, duration_text};
+use serde::Serialize;
 use std::fmt;
 use std::time::Duration;
 
 /// A range for the remaining time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Eta {
     /// Optimistic end of the range.
+    #[serde(serialize_with = "as_seconds")]
     pub low: Duration,
     /// Pessimistic end of the range.
+    #[serde(serialize_with = "as_seconds")]
     pub high: Duration,
 }
 

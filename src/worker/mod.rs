@@ -45,5 +45,5 @@ pub use open::open;
 pub use options::{JobKey, WorkOptions};
 pub use planner::Planner;
 pub use progress::{Progress, RunningJob, SilentProgress, Snapshot};
-pub use provenance::{machine, program};
+pub use provenance::program;
 pub use work::{WorkError, WorkSummary, work};

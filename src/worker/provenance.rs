@@ -38,14 +38,6 @@ pub fn worker(threads: usize) -> Worker {
     worker
 }
 
-/// What the speed of this process depends on, as text: machine, processor, vector instructions and program.
-pub fn machine() -> String {
-    let host = Worker::this_process(0, VERSION, "").host;
-    let cpu = cpu_model().unwrap_or_default();
-    let optimised = if cfg!(debug_assertions) { "debug" } else { "release" };
-    [host.as_str(), &cpu, &vectors(), VERSION, SOURCES, optimised].join(", ")
-}
-
 /// The processor's name, if the system provides it.
 fn cpu_model() -> Option<String> {
     let processors = std::fs::read_to_string("/proc/cpuinfo").ok()?;

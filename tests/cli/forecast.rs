@@ -22,6 +22,7 @@ fn the_forecast_is_that_of_the_run() {
     let forecast = parsed(&folder.ok("validate mine.json --json --threads 1"));
     assert_eq!((forecast["study"].as_str(), forecast["jobs"].as_u64()), (Some("mine"), Some(4)));
     assert_eq!(forecast["database"], Value::Null);
+    assert_eq!(forecast["speed"], json!({ "fast_ns": 3.0, "slow_ns": 12.0, "finished_jobs": 0 }));
     folder.ok("run mine.json --threads 1");
     let run = rows(&folder.ok("export mine"));
     let groups = forecast["groups"].as_array().unwrap();
@@ -71,6 +72,28 @@ fn a_dry_run_changes_nothing() {
     assert_eq!(folder.ok("status --json"), before);
 }
 
+/// Protects: a forecast says what it is based on. Once ten jobs have finished in the database, it is their speed, and the
+/// range for the same jobs is narrower.
+#[test]
+fn finished_jobs_give_the_speed() {
+    let mut study = small(&json!({ "mu": [0.2, 0.25, 0.3, 0.35, 0.4], "omega_rpm": [2, 7] }));
+    study["run"] = json!({ "limit_s": 0.002, "stop_early": false });
+    let folder = Folder::with("mine", &study);
+    study["run"]["limit_s"] = json!(0.02);
+    folder.add("long", &study);
+    let width = |jobs: u64, words: &str| {
+        let forecast = parsed(&folder.ok("validate long.json --json --threads 1"));
+        assert_eq!(forecast["speed"]["finished_jobs"], json!(jobs));
+        let [fast, slow] = ["fast_ns", "slow_ns"].map(|end| forecast["speed"][end].as_f64().unwrap());
+        assert!(folder.ok("validate long.json").contains(words));
+        slow / fast
+    };
+    let first = width(0, "at a typical speed");
+    folder.ok("run mine.json --threads 1");
+    let later = width(10, "at the speed of 10 finished jobs in the database");
+    assert!(1.0 < later && later < first, "{later} {first}");
+}
+
 /// Protects: what a run refuses because of its surroundings, `validate` refuses with the same message, and it creates nothing.
 #[test]
 fn validate_refuses_what_a_run_refuses() {
@@ -104,7 +127,7 @@ fn progress_fits_a_terminal_of_eighty_columns() {
     if Command::new("timeout").arg("--version").stdout(Stdio::null()).status().is_err() {
         return missing("`timeout` is not installed", "install coreutils");
     }
-    // The jobs take seconds to minutes, and are interrupted. They are too short for a measurement of the machine.
+    // The jobs take seconds to minutes, and are interrupted.
     let mut study = small(&json!({ "mu": [0.2, 0.3, 0.4], "omega_rpm": [2, 7, 20] }));
     study["run"] = json!({ "limit_s": 0.3, "stop_early": false });
     let folder = Folder::with("mine", &study);
@@ -114,7 +137,6 @@ fn progress_fits_a_terminal_of_eighty_columns() {
         .args(["--quiet", "--return", "--command", &run, "typescript"])
         .current_dir(folder.path(""))
         .env("TERM", "xterm")
-        .env("XDG_CACHE_HOME", env!("CARGO_TARGET_TMPDIR"))
         .stdin(Stdio::null())
         .output()
         .unwrap();

@@ -108,9 +108,27 @@ fn the_text_agrees_with_the_record() {
     )
     .unwrap();
     let text = folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10");
-    assert!(text.contains("regime                 stable\n"), "{text}");
-    assert!(text.contains("frequency              none\n"), "{text}");
-    assert!(text.contains(&format!("{:.5} ± ", record["mu_star"].as_f64().unwrap())), "{text}");
+    let line = |name: &str| {
+        let found = text.lines().find(|line| line.split_whitespace().next() == Some(name));
+        found.map(|line| line.split_whitespace().nth(1).unwrap().to_owned())
+    };
+    assert_eq!(line("regime").as_deref(), Some("stable"), "{text}");
+    assert_eq!(line("frequency_hz"), None, "{text}");
+    let mu_star: f64 = line("mu_star").unwrap().parse().unwrap();
+    assert!((mu_star / record["mu_star"].as_f64().unwrap() - 1.0).abs() < 1e-5, "{text}");
+    // What `show` prints of the same job in a database is the same, but for the study and the provenance.
+    folder.ok("run mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --name one");
+    let key = text.lines().next().unwrap().split_whitespace().nth(1).unwrap();
+    let shown = folder.ok(&format!("show {key}"));
+    let own = |text: &str| {
+        let lines = text.lines().take_while(|line| *line != "Provenance");
+        lines
+            .filter(|line| !line.starts_with("study"))
+            .map(|line| line.trim_end().to_owned())
+            .collect::<Vec<_>>()
+    };
+    let [solved, shown] = [text.as_str(), &shown].map(own);
+    assert_eq!(solved.join("\n").trim_end(), shown.join("\n").trim_end());
     // The stress is proportional to the load.
     let full: Value =
         serde_json::from_str(&folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --json")).unwrap();

@@ -12,9 +12,6 @@ use tempfile::TempDir;
 /// The command under test.
 pub const TRIBOSWEEP: &str = env!("CARGO_BIN_EXE_tribosweep");
 
-/// The cache folder of all tests: the speed of the machine is measured once.
-const CACHE: &str = env!("CARGO_TARGET_TMPDIR");
-
 /// The header of the export, which other programs rely on.
 pub const HEADER: &str = "study,job,omega_rpm,mu,status,regime,mu_star,mu_star_se,mu_star_contact,frequency_hz,\
 stick_share,slip_share,separated_share,n_over_f_min,n_over_f_max,sigma_n_max_pa,slip_speed_max_m_s,cycles,\
@@ -57,7 +54,7 @@ impl Folder {
     /// The command in this folder, with arguments separated by spaces.
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(TRIBOSWEEP);
-        command.current_dir(&self.0).env_remove("TRIBOSWEEP_DB").env("XDG_CACHE_HOME", CACHE);
+        command.current_dir(&self.0).env_remove("TRIBOSWEEP_DB");
         command.args(arguments.split_whitespace());
         command.timeout(TIMEOUT);
         command
@@ -82,7 +79,6 @@ impl Folder {
         let child = std::process::Command::new(TRIBOSWEEP)
             .current_dir(&self.0)
             .env_remove("TRIBOSWEEP_DB")
-            .env("XDG_CACHE_HOME", CACHE)
             .args(arguments.split_whitespace())
             .stdout(Stdio::piped())
             .stderr(messages)

@@ -1,6 +1,6 @@
 //! `tribosweep show`: one job with its inputs, its result and the provenance of the result.
 
-mod text;
+pub(crate) mod text;
 
 use super::error::CliError;
 use super::output::{print, terminal_width};
@@ -52,28 +52,16 @@ fn as_json(job: &StoredJob) -> Value {
     });
     // A damaged record is not shown: its figures look like any others.
     let unreadable = job.row().ok().and_then(|row| row.unreadable().map(str::to_owned));
-    json!({
-        "job": details.key,
-        "studies": studies.iter().map(study).collect::<Vec<_>>(),
-        "state": details.state.as_str(),
-        "attempt": details.attempt,
-        "crashes": details.crashes,
-        "priority": details.priority,
-        "cost": details.cost,
-        "batch": details.batch,
-        "note": details.note,
-        "error": details.error,
-        "wall_s": details.wall_s,
-        "started_ms": details.started_ms,
-        "started": details.started_ms.map(utc_iso),
-        "finished_ms": details.finished_ms,
-        "finished": details.finished_ms.map(utc_iso),
-        "provenance": details.provenance.as_deref().map(parsed),
-        "inputs": inputs,
-        "spec": parsed(&details.payload),
-        "unreadable": unreadable,
-        "record": details.record.as_deref().filter(|_| unreadable.is_none()).map(parsed),
-    })
+    let mut json = json!(details);
+    json["studies"] = studies.iter().map(study).collect();
+    json["started"] = details.started_ms.map(utc_iso).into();
+    json["finished"] = details.finished_ms.map(utc_iso).into();
+    json["provenance"] = details.provenance.as_deref().map(parsed).into();
+    json["inputs"] = inputs.into();
+    json["spec"] = parsed(&details.payload);
+    json["record"] = details.record.as_deref().filter(|_| unreadable.is_none()).map(parsed).into();
+    json["unreadable"] = unreadable.into();
+    json
 }
 
 /// A text as JSON, or as a string if it is not JSON.

@@ -1,4 +1,4 @@
-//! A job as text.
+//! A job as text: the only printer of a record in words for a terminal.
 
 use super::parsed;
 use crate::analysis::{AboveBand, ComplexMode, SlidingStability};
@@ -6,10 +6,10 @@ use crate::publish::table::{Column, Table, listed};
 use crate::publish::value::{self, MISSING};
 use crate::report::columns::{ExportColumn, FURTHER, Group, PLAIN};
 use crate::report::{JobRow, assignment};
+use crate::spec::JobSpec;
 use crate::study::{Input, inputs};
 use crate::sweep::{StoredJob, StudyOfJob};
 use serde_json::Value;
-use std::fmt::Write;
 
 /// Significant digits of a result. Inputs have all of theirs.
 const DIGITS: usize = 6;
@@ -26,42 +26,47 @@ const PARTS: [(&str, &str); 5] = [
 /// The columns that the head or the provenance of the text has.
 const ELSEWHERE: [&str; 6] = ["study", "job", "omega_rpm", "mu", "status", "wall_s"];
 
-/// Everything about a job, for a terminal of `width` characters or for a file.
+/// Everything about a job of a database, for a terminal of `width` characters or for a file.
 pub(super) fn of_job(job: &StoredJob, width: Option<usize>) -> String {
-    let mut text = listed(0, &head(job), width);
-    let mut add = |heading: &str, lines: &[[String; 3]]| {
-        if !lines.is_empty() {
-            let _ = write!(text, "\n{heading}\n{}", listed(2, lines, width));
-        }
+    let found = job.spec().and_then(|spec| Ok((spec, job.row()?)));
+    let body = match &found {
+        Ok((spec, row)) => of_inputs(spec, width) + &of_result(row, &Group::ALL, width),
+        Err(error) => section("Inputs and result", &[[error.to_string()]], width),
     };
-    match job.spec() {
-        Ok(spec) => {
-            let inputs = inputs(&spec);
-            for (part, heading) in PARTS {
-                let of_part = inputs.iter().filter(|input| input.parameter.part() == Some(part));
-                add(heading, &of_part.map(input_cells).collect::<Vec<_>>());
-            }
-        }
-        Err(error) => add("Inputs", &[[error.to_string(), String::new(), String::new()]]),
-    }
-    match job.row() {
-        Ok(row) if row.record().is_some() => {
-            for group in Group::ALL {
-                add(heading(group), &figures(&row, group));
-            }
-            if let Some(table) = row.record().and_then(|record| record.stability.as_ref()).map(modes) {
-                text += &table;
-            }
-        }
-        Ok(row) => {
-            if let Some(reason) = row.unreadable() {
-                add("Result", &[[reason.to_owned(), String::new(), String::new()]]);
-            }
-        }
-        Err(error) => add("Result", &[[error.to_string(), String::new(), String::new()]]),
-    }
-    let _ = write!(text, "\nProvenance\n{}", listed(2, &provenance(job), width));
-    text
+    let row = found.as_ref().ok().map(|(_, row)| row);
+    listed(0, &head(job, row), width) + &body + &section("Provenance", &provenance(job), width)
+}
+
+/// Everything about a job that was solved and is in no database.
+pub(crate) fn of_solved(spec: &JobSpec, row: &JobRow, width: Option<usize>) -> String {
+    let head = [["job".to_owned(), row.job.clone()], ["state".to_owned(), format!("done: {}", row.status())]];
+    listed(0, &head, width) + &of_inputs(spec, width) + &of_result(row, &Group::ALL, width)
+}
+
+/// Lines below a heading; nothing without lines.
+fn section<L: AsRef<[String]>>(heading: &str, lines: &[L], width: Option<usize>) -> String {
+    if lines.is_empty() { String::new() } else { format!("\n{heading}\n{}", listed(2, lines, width)) }
+}
+
+fn of_inputs(spec: &JobSpec, width: Option<usize>) -> String {
+    let inputs = inputs(spec);
+    let of_part = |(part, heading): (&str, &str)| {
+        let own = inputs.iter().filter(|input| input.parameter.part() == Some(part));
+        section(heading, &own.map(input_cells).collect::<Vec<_>>(), width)
+    };
+    PARTS.map(of_part).concat()
+}
+
+/// The record in these groups, or why it cannot be read; nothing of a job that has not ended.
+pub(crate) fn of_result(row: &JobRow, groups: &[Group], width: Option<usize>) -> String {
+    let Some(record) = row.record() else {
+        return row
+            .unreadable()
+            .map_or_else(String::new, |reason| section("Result", &[[reason.to_owned()]], width));
+    };
+    let of_group = |group: &Group| section(heading(*group), &figures(row, *group), width);
+    let modes = record.stability.as_ref().filter(|_| groups.contains(&Group::Stability)).map(modes);
+    groups.iter().map(of_group).collect::<String>() + &modes.unwrap_or_default()
 }
 
 /// The heading of a group of figures.
@@ -81,14 +86,10 @@ fn heading(group: Group) -> &'static str {
     }
 }
 
-fn head(job: &StoredJob) -> Vec<[String; 2]> {
+fn head(job: &StoredJob, row: Option<&JobRow>) -> Vec<[String; 2]> {
     let details = &job.details;
     let line = |name: &str, text: String| [name.to_owned(), text];
-    let outcome = job
-        .row()
-        .ok()
-        .filter(|row| row.record().is_some() || row.unreadable().is_some())
-        .map(|row| row.status());
+    let outcome = row.filter(|row| row.record().is_some() || row.unreadable().is_some()).map(JobRow::status);
     let state = details.state.as_str();
     let mut lines = vec![
         line("job", details.key.clone()),

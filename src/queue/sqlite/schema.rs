@@ -7,7 +7,6 @@ use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
 use sqlx::{SqlSafeStr, SqliteConnection};
 
 use super::error::{classify, classify_at_open};
-use super::lock::FormerWorkerLock;
 use crate::queue::error::QueueError;
 
 /// The application id in the file's header, set by the first migration: "trib" in ASCII.
@@ -42,21 +41,12 @@ pub(super) async fn migrate(connection: &mut SqliteConnection, path: &Path) -> R
     let known = newest(&migrator);
     // A migration rebuilds tables that others refer to. The pragma has no effect inside the migration's transaction.
     sqlx::query("PRAGMA foreign_keys = OFF").execute(&mut *connection).await.map_err(classify)?;
-    let former = if version(connection).await.map_err(classify)? == 1 {
-        Some(FormerWorkerLock::take(path)?)
-    } else {
-        None
-    };
     migrator.run(connection).await.map_err(|error| match error {
         MigrateError::VersionMissing(found) if found > known => {
             QueueError::NewerDatabase { database: path.into(), found, known }
         }
         error => QueueError::Migrate { database: path.into(), source: error.into() },
-    })?;
-    if let Some(former) = former {
-        former.remove();
-    }
-    Ok(())
+    })
 }
 
 /// Refuses a read-only database with tables of another version, which would have to be migrated first.

@@ -12,7 +12,7 @@ use crate::report::row::{JobRow, RowState};
 use Group::{Contact, Disk, Energies, Holder, Job, Nodes, Residuals, Result, Run, Stability};
 use serde_json::Value;
 
-/// The columns of every export. Older versions have them too, in this order.
+/// The columns of every export.
 #[rustfmt::skip]
 pub static PLAIN: [ExportColumn; 25] = [
     of_row("study", "", Job, "name of the study", |row| row.study.as_str().into()),
@@ -141,7 +141,6 @@ fn holder(row: &JobRow, direction: &str, read: impl FnOnce(&HolderMotion) -> f64
     of(row, |record| record.holder.iter().find(|motion| motion.direction == direction).map(read))
 }
 
-/// Records of versions without eigenvalues are those of runs.
 fn decided_by(record: &JobRecord) -> &'static str {
     let is_decided = record.stability.as_ref().is_some_and(|sliding| sliding.decided);
     if is_decided { "eigenvalues" } else { "run" }

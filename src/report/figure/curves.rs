@@ -9,7 +9,6 @@ use crate::publish::chart::{
 };
 use crate::publish::value;
 use crate::report::discretisation::Discretisation;
-use crate::report::glyph::regime_label;
 use crate::report::layout::{Group, Layout};
 use crate::report::parameters::{MU, SOURCE};
 use crate::report::row::JobRow;
@@ -360,7 +359,7 @@ fn regimes(results: &[&Place]) -> Vec<Entry> {
     let regimes =
         || results.iter().filter_map(|place| Some((place.row.record()?.regime, is_periodic(place.row))));
     let occurs = |regime: &Regime| regimes().any(|(own, _)| own == *regime);
-    let entry = |regime| Entry::marker(marker(regime, true, GREY), regime_label(regime));
+    let entry = |regime| Entry::marker(marker(regime, true, GREY), regime.label());
     let mut entries: Vec<Entry> = REGIMES.into_iter().filter(occurs).map(entry).collect();
     if !entries.is_empty() {
         entries.insert(0, Entry::heading("contact regime"));

@@ -1,10 +1,10 @@
-//! From rows to physical cases.
+//! From rows to physical cases: the finished jobs of each, their reference and their scores.
 
-use super::case::Case;
-use super::done::DoneJob;
-use super::error::ParetoError;
-use crate::publish::value::count;
-use crate::report::row::JobRow;
+use super::reference::{DoneJob, Reference};
+use super::score::{self, Score};
+use super::settings::physics_in_words;
+use crate::publish::value::{self, count};
+use crate::report::row::{JobNumerics, JobRow, RowState};
 
 /// All physical cases with at least two finished jobs.
 #[derive(Debug)]
@@ -15,66 +15,104 @@ pub struct Comparison<'a> {
     pub left_out: Vec<String>,
 }
 
+/// The jobs of one physical case.
+#[derive(Debug)]
+pub struct Case<'a> {
+    /// The physical parameters in words.
+    pub caption: String,
+    /// Its finished jobs, in the order of the study.
+    pub jobs: Vec<DoneJob<'a>>,
+    /// The figures that they are compared with.
+    pub reference: Reference,
+    /// One score for each job.
+    pub scores: Vec<Score>,
+    /// Number of jobs that are pending, running or cancelled.
+    pub waiting: usize,
+    /// Number of jobs that failed.
+    pub failed: usize,
+}
+
+/// There are no jobs that can be compared.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ParetoError {
+    /// Too few results.
+    #[error(
+        "jobs done: {done} of {jobs}; expected at least two done jobs of one physical case; \
+         finish the study with `tribosweep run` first"
+    )]
+    TooFewDone {
+        /// Jobs with a result.
+        done: usize,
+        /// Jobs in all.
+        jobs: usize,
+    },
+    /// Every physical case has a single job.
+    #[error(
+        "no two of the done jobs ({done}) are the same physical case: expected a study that varies numerics \
+         (elements, safety_factor, time_step_s, beta2, stop_early, tolerance …) at fixed physics"
+    )]
+    OneJobACase {
+        /// Jobs with a result.
+        done: usize,
+    },
+}
+
+impl<'a> Case<'a> {
+    /// The case of `jobs`, which are two or more. `all` are all of its rows, finished or not.
+    fn new(jobs: Vec<DoneJob<'a>>, all: &[&JobRow], names_damping: bool) -> Self {
+        let physics = physics_in_words(jobs[0].row);
+        let damping = value::rounded(jobs[0].numerics.beta_r_s);
+        let reference = Reference::of(&jobs);
+        let is_failed =
+            |row: &&&JobRow| matches!(row.state, RowState::Failed { .. } | RowState::Unreadable { .. });
+        let failed = all.iter().filter(is_failed).count();
+        Self {
+            caption: if names_damping { format!("{physics}, β_R = {damping} s") } else { physics },
+            scores: score::scores(&jobs, &reference),
+            reference,
+            waiting: all.len() - jobs.len() - failed,
+            failed,
+            jobs,
+        }
+    }
+}
+
 /// Compares the finished jobs of each physical case with the finest of them.
 ///
 /// A job that is in `rows` twice (of two studies that share it) counts once.
 ///
 /// # Errors
-/// If there is nothing to compare: fewer than two jobs are done, none of them are of the same physical case,
-/// or their numerics or run times are not known.
+/// If there is nothing to compare: fewer than two jobs are done, or none of them are of the same physical case.
 pub fn compare(rows: &[JobRow]) -> Result<Comparison<'_>, ParetoError> {
-    let rows = distinct(rows);
+    let mut seen = std::collections::HashSet::new();
+    let rows: Vec<&JobRow> = rows.iter().filter(|row| seen.insert(row.job.as_str())).collect();
     let done = rows.iter().filter(|row| row.record().is_some()).count();
     if done < 2 {
         return Err(ParetoError::TooFewDone { done, jobs: rows.len() });
     }
-    if rows.iter().all(|row| row.numerics.is_none()) {
-        return Err(ParetoError::NoNumerics);
-    }
-    if rows.iter().all(|row| row.record().is_none() || row.wall_s.is_none()) {
-        return Err(ParetoError::NoRunTimes { done });
-    }
     let mut comparison = Comparison { cases: Vec::new(), left_out: Vec::new() };
-    for group in grouped(&rows, |row| row.numerics.as_ref().map(|numerics| numerics.case.clone())) {
+    for group in grouped(&rows, |numerics| numerics.case.clone()) {
         let by_damping = damping_is_physics(&group);
-        let parts = if by_damping {
-            grouped(&group, |row| row.numerics.as_ref().map(|numerics| numerics.beta_r_s.to_bits()))
-        } else {
-            vec![group]
-        };
+        let parts =
+            if by_damping { grouped(&group, |numerics| numerics.beta_r_s.to_bits()) } else { vec![group] };
         for part in parts {
             let jobs: Vec<DoneJob> = part.iter().filter_map(|row| DoneJob::of(row)).collect();
             if jobs.len() < 2 {
-                let words = super::settings::physics_in_words(part[0]);
-                comparison.left_out.push(format!(
-                    "{words}: {} of {} done",
-                    jobs.len(),
-                    count(part.len(), "job")
-                ));
+                let (words, of) = (physics_in_words(part[0]), count(part.len(), "job"));
+                comparison.left_out.push(format!("{words}: {} of {of} done", jobs.len()));
             } else {
                 comparison.cases.push(Case::new(jobs, &part, by_damping));
             }
         }
     }
-    if comparison.cases.is_empty() {
-        return Err(ParetoError::OneJobACase { done });
-    }
-    Ok(comparison)
+    if comparison.cases.is_empty() { Err(ParetoError::OneJobACase { done }) } else { Ok(comparison) }
 }
 
-fn distinct(rows: &[JobRow]) -> Vec<&JobRow> {
-    let mut seen = std::collections::HashSet::new();
-    rows.iter().filter(|row| seen.insert(row.job.as_str())).collect()
-}
-
-/// Groups in the order of their first rows; rows without a key are left out.
-fn grouped<'a, K: PartialEq>(
-    rows: &[&'a JobRow],
-    key: impl Fn(&JobRow) -> Option<K>,
-) -> Vec<Vec<&'a JobRow>> {
+/// Groups in the order of their first rows.
+fn grouped<'a, K: PartialEq>(rows: &[&'a JobRow], key: impl Fn(&JobNumerics) -> K) -> Vec<Vec<&'a JobRow>> {
     let mut groups: Vec<(K, Vec<&JobRow>)> = Vec::new();
     for &row in rows {
-        let Some(key) = key(row) else { continue };
+        let Some(key) = row.numerics.as_ref().map(&key) else { continue };
         match groups.iter_mut().find(|(own, _)| *own == key) {
             Some((_, group)) => group.push(row),
             None => groups.push((key, vec![row])),

@@ -1,10 +1,9 @@
 //! Error against run time: a comparison of jobs that differ in their numerics only with the finest of them.
 //!
 //! ```text
-//! rows ──► case (one per physical case) ───► reference (finest job, extrapolated: refinement)
+//! rows ──► compare (one case per physics) ──► reference (finest job, extrapolated: refinement)
 //!                                                 │
-//!          front ◄── score (errors, costs) ◄──────┘──► early (what stopping early changes)
-//!            └────────► page, csv, plot
+//!          tables, page, plot ◄── score (errors, costs, fronts)
 //! ```
 //!
 //! # Definitions
@@ -21,31 +20,21 @@
 //!   uncertainty u of the reference. The error that can be claimed for a job is its error, or the resolution
 //!   (rounded up to two digits) if the error is not resolved. The Pareto front and the figure show this error.
 
-mod case;
 mod compare;
-mod csv;
-mod done;
-mod early;
-mod error;
-mod front;
 mod page;
 mod plot;
 mod reference;
 pub mod refinement;
 mod score;
 mod settings;
+mod tables;
 
-pub use case::Case;
-pub use compare::{Comparison, compare};
-pub(super) use csv::described;
-pub use done::DoneJob;
-pub use early::EarlyStop;
-pub use error::ParetoError;
-pub use front::on_front;
+pub use compare::{Case, Comparison, ParetoError, compare};
 pub use page::markdown;
 pub use plot::chart;
-pub use reference::{Chain, Direction, Reference, Target};
-pub use score::Score;
+pub use reference::{Chain, Direction, DoneJob, Reference, Target};
+pub use score::{Score, on_front};
+pub(super) use tables::described;
 
 use crate::publish::{Folder, PublishError, html, markdown as as_markdown};
 use std::path::{Path, PathBuf};
@@ -65,8 +54,8 @@ pub fn write(comparison: &Comparison, out_dir: &Path, title: &str) -> Result<Vec
         folder.write_text(&name, &svg)?;
         figures.push((name, svg));
     }
-    folder.write_table(&csv::jobs(comparison))?;
-    folder.write_table(&csv::refinements(comparison))?;
+    folder.write_table(&tables::jobs(comparison))?;
+    folder.write_table(&tables::refinements(comparison))?;
     let page = page::page(comparison, &figures, title);
     folder.write_text("pareto.html", &html::of_page(&page))?;
     folder.write_text("pareto.md", &as_markdown::of_page(&page))?;

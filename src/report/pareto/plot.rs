@@ -1,8 +1,8 @@
 //! Error of μ\* against solver time, log–log, with the Pareto front.
 
-use super::case::Case;
-use super::front::on_front;
+use super::compare::Case;
 use super::page::figure_title;
+use super::score::on_front;
 use crate::publish::chart::palette::{self, GREY, INK, Rgb};
 use crate::publish::chart::{At, Axis, Chart, Entry, Layer, Marker, Panel, Pen, Point, Scale, Shape};
 use serde_json::Value;

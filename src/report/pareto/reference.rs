@@ -1,19 +1,57 @@
 //! The figures that the jobs of a case are compared with: those of its finest job, extrapolated if the order is clean.
 
-use super::done::DoneJob;
 use super::refinement::{self, Level, Limit};
-use crate::report::row::JobNumerics;
+use crate::analysis::JobRecord;
+use crate::report::row::{JobNumerics, JobRow};
 use std::cmp::Ordering;
 
-/// Number of the figures that are compared: μ*, frequency and the shares of stick, slip and separation.
-pub(super) const FIGURES: usize = 5;
+/// A finished job with everything that the comparison needs.
+#[derive(Debug, Clone, Copy)]
+pub struct DoneJob<'a> {
+    /// Its row.
+    pub row: &'a JobRow,
+    /// Its numerics.
+    pub numerics: &'a JobNumerics,
+    /// Its record.
+    pub record: &'a JobRecord,
+}
+
+impl<'a> DoneJob<'a> {
+    /// The job of a row, if it is done and its numerics are known.
+    pub(super) fn of(row: &'a JobRow) -> Option<Self> {
+        Some(Self { row, numerics: row.numerics.as_ref()?, record: row.record()? })
+    }
+}
+
+/// A figure that is compared.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Figure {
+    /// Its column in the export.
+    pub column: &'static str,
+    /// Its name for a reader.
+    pub name: &'static str,
+    read: fn(&JobRecord) -> Option<f64>,
+}
+
+impl Figure {
+    /// Its value in a record, if it has one that is finite.
+    pub fn value(&self, record: &JobRecord) -> Option<f64> {
+        (self.read)(record).filter(|value| value.is_finite())
+    }
+}
+
+/// The figures that are compared.
+pub(super) const FIGURES: [Figure; 5] = [
+    Figure { column: "mu_star", name: "μ*", read: |record| Some(record.mu_star) },
+    Figure { column: "frequency_hz", name: "frequency", read: |record| record.frequency_hz },
+    Figure { column: "stick_share", name: "stick", read: |record| Some(record.stick_share) },
+    Figure { column: "slip_share", name: "slip", read: |record| Some(record.slip_share) },
+    Figure { column: "separated_share", name: "separated", read: |record| Some(record.separated_share) },
+];
 /// Index of μ*.
 pub(super) const MU_STAR: usize = 0;
 /// Index of the frequency.
 pub(super) const FREQUENCY: usize = 1;
-
-/// Names of the figures.
-pub(super) const FIGURE_NAMES: [&str; FIGURES] = ["μ*", "frequency", "stick", "slip", "separated"];
 
 /// What is refined along a chain of jobs that differ in nothing else.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,7 +85,7 @@ pub struct Chain {
     /// Their element sizes or time steps [m or s].
     pub sizes: Vec<f64>,
     /// The limit of each figure; none if one of the jobs does not have the figure.
-    pub limits: [Option<Limit>; FIGURES],
+    pub limits: [Option<Limit>; FIGURES.len()],
 }
 
 /// One figure of the reference.
@@ -69,20 +107,7 @@ pub struct Reference {
     /// The chains that end at it.
     pub chains: Vec<Chain>,
     /// The figures; none if the finest job does not have the figure (there is no frequency without a limit cycle).
-    pub targets: [Option<Target>; FIGURES],
-}
-
-/// The figures of a job.
-pub(super) fn figures(job: &DoneJob) -> [Option<f64>; FIGURES] {
-    let record = job.record;
-    let finite = |value: f64| value.is_finite().then_some(value);
-    [
-        finite(record.mu_star),
-        record.frequency_hz.and_then(finite),
-        finite(record.stick_share),
-        finite(record.slip_share),
-        finite(record.separated_share),
-    ]
+    pub targets: [Option<Target>; FIGURES.len()],
 }
 
 /// Standard error of a figure; 0 for all figures but μ*.
@@ -91,21 +116,23 @@ pub(super) fn standard_error(job: &DoneJob, figure: usize) -> f64 {
     if known { job.record.mu_star_se } else { 0.0 }
 }
 
-/// The reference of a case.
-///
-/// # Panics
-/// If there are no jobs.
-pub(super) fn of(jobs: &[DoneJob]) -> Reference {
-    let finest_mesh = jobs.iter().map(|job| job.numerics.element_size_m).fold(f64::INFINITY, f64::min);
-    let damping =
-        jobs.iter().find(|job| job.numerics.element_size_m == finest_mesh).map(|job| job.numerics.beta_r_s);
-    let finest = (0..jobs.len())
-        .filter(|&i| Some(jobs[i].numerics.beta_r_s) == damping)
-        .min_by(|&a, &b| finer_first(&jobs[a], &jobs[b]))
-        .expect("a case has jobs");
-    let chains = chains(jobs, finest);
-    let targets = std::array::from_fn(|figure| target(&jobs[finest], &chains, figure));
-    Reference { job: finest, chains, targets }
+impl Reference {
+    /// The reference of a case.
+    ///
+    /// # Panics
+    /// If there are no jobs.
+    pub(super) fn of(jobs: &[DoneJob]) -> Self {
+        let finest_mesh = jobs.iter().map(|job| job.numerics.element_size_m).fold(f64::INFINITY, f64::min);
+        let damping = jobs.iter().find(|job| job.numerics.element_size_m == finest_mesh);
+        let damping = damping.map(|job| job.numerics.beta_r_s);
+        let job = (0..jobs.len())
+            .filter(|&i| Some(jobs[i].numerics.beta_r_s) == damping)
+            .min_by(|&a, &b| finer_first(&jobs[a], &jobs[b]))
+            .expect("a case has jobs");
+        let chains = chains(jobs, job);
+        let targets = std::array::from_fn(|figure| target(&jobs[job], &chains, figure));
+        Self { job, chains, targets }
+    }
 }
 
 fn finer_first(a: &DoneJob, b: &DoneJob) -> Ordering {
@@ -125,7 +152,7 @@ fn finer_first(a: &DoneJob, b: &DoneJob) -> Ordering {
 }
 
 fn target(finest: &DoneJob, chains: &[Chain], figure: usize) -> Option<Target> {
-    let value = figures(finest)[figure]?;
+    let value = FIGURES[figure].value(finest.record)?;
     let mut target = Target { value, standard_error: standard_error(finest, figure), uncertainty: None };
     let mut step_is_covered = false;
     for chain in chains {
@@ -174,7 +201,7 @@ fn limit(levels: &[&DoneJob], size: fn(&DoneJob) -> f64, figure: usize) -> Optio
     let levels: Option<Vec<Level>> = levels
         .iter()
         .map(|job| {
-            let value = figures(job)[figure]?;
+            let value = FIGURES[figure].value(job.record)?;
             Some(Level { size: size(job), value, standard_error: standard_error(job, figure) })
         })
         .collect();

@@ -1,8 +1,6 @@
 //! Errors and costs of the jobs of a case.
 
-use super::done::DoneJob;
-use super::front::on_front;
-use super::reference::{self, FREQUENCY, MU_STAR, Reference};
+use super::reference::{self, DoneJob, FIGURES, FREQUENCY, MU_STAR, Reference};
 
 /// The errors and costs of a job.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,17 +74,20 @@ pub(super) fn scores(jobs: &[DoneJob], reference: &Reference) -> Vec<Score> {
 }
 
 fn score(job: &DoneJob, reference: &Reference) -> Score {
-    let found = reference::figures(job);
     // Signed difference, its resolution, and the value of the reference.
     let difference = |figure: usize| {
         let target = reference.targets[figure]?;
         let noise = reference::standard_error(job, figure).hypot(target.standard_error);
-        Some((found[figure]? - target.value, noise + target.uncertainty.unwrap_or(0.0), target.value))
+        Some((
+            FIGURES[figure].value(job.record)? - target.value,
+            noise + target.uncertainty.unwrap_or(0.0),
+            target.value,
+        ))
     };
     let relative = |figure| {
         difference(figure).map(|(error, resolution, value)| (error / value, (resolution / value).abs()))
     };
-    let shares: Vec<_> = (FREQUENCY + 1..reference::FIGURES).filter_map(difference).collect();
+    let shares: Vec<_> = (FREQUENCY + 1..FIGURES.len()).filter_map(difference).collect();
     // The largest resolved error of a share, or else the share with the largest resolution.
     let resolved = shares.iter().filter(|(error, resolution, _)| exceeds(*error, *resolution));
     let shown = resolved.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
@@ -101,9 +102,18 @@ fn score(job: &DoneJob, reference: &Reference) -> Score {
         frequency_resolution: frequency.map(|(_, resolution)| resolution),
         shares_error,
         shares_resolution,
-        node_steps: job.node_steps(),
+        node_steps: job.numerics.nodes as f64 * job.record.steps as f64,
         wall_s: job.row.wall_s,
         on_wall_front: false,
         on_node_step_front: false,
     }
+}
+
+/// For each point (cost, error) whether it is on the Pareto front: no other point has at most the same cost and at most the same
+/// error, and less of one of them. Points with a number that is not finite are never on it.
+pub fn on_front(points: &[(f64, f64)]) -> Vec<bool> {
+    let is_finite = |(cost, error): (f64, f64)| cost.is_finite() && error.is_finite();
+    let beats = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b && is_finite(a);
+    let is_on = |point: &(f64, f64)| is_finite(*point) && !points.iter().any(|other| beats(*other, *point));
+    points.iter().map(is_on).collect()
 }

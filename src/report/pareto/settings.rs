@@ -1,60 +1,37 @@
-//! The numerics of a job in words, and the parameters of a grid that belong to them.
+//! The numerics of a job, and the physical case in words.
 
 use crate::publish::table::Column;
-use crate::publish::value;
 use crate::report::parameters::{MU, OMEGA, assignments};
 use crate::report::row::{JobNumerics, JobRow};
 
-/// Grid parameters that change the numerics and not the physical case.
-const NUMERICS: [&str; 19] = [
-    "elements",
-    "nx",
-    "ny",
-    "nz",
-    "beta2",
-    "beta_r_s",
-    "safety_factor",
-    "time_step_s",
-    "precision",
-    "limit_s",
-    "stop_early",
-    "average_last_fraction",
-    "cycles",
-    "tolerance",
-    "drift_tolerance",
-    "regime_threshold",
-    "decay_observation_s",
-    "start",
-    "stability",
-];
+/// Grid parameters that change the numerics and are not among [`SETTINGS`].
+const NUMERICS: [&str; 7] =
+    ["nx", "ny", "nz", "time_step_s", "regime_threshold", "decay_observation_s", "stability"];
 
 /// The physical parameters of a job in words, ω and μ first.
 pub(super) fn physics_in_words(row: &JobRow) -> String {
-    let further = row.further().filter(|(name, _)| !NUMERICS.contains(name));
+    let is_numeric =
+        |name: &str| SETTINGS.iter().any(|own| own.head.name == name) || NUMERICS.contains(&name);
+    let further = row.further().filter(|(name, _)| !is_numeric(name));
     let further = further.map(|(name, value)| (name, value.clone()));
-    let own = [OMEGA, MU].map(|name| (name, row.parameter(name)));
-    assignments(own.into_iter().chain(further))
+    assignments([OMEGA, MU].map(|name| (name, row.parameter(name))).into_iter().chain(further))
 }
 
-/// The settings of a job in words.
-pub(super) const SETTINGS: [Column<JobNumerics>; 12] = [
-    Column::new("elements", "", "", |of| of.elements.map(|count| count.to_string()).join("×").into()),
-    Column::new("safety factor", "", "", |of| {
-        of.safety_factor.map_or_else(|| "step given".to_owned(), value::rounded).into()
-    }),
-    Column::new("β₂", "", "", |of| of.beta2.into()),
-    Column::new("β_R [s]", "", "", |of| of.beta_r_s.into()),
-    Column::new("stop early", "", "", |of| if of.stop_early { "yes" } else { "no" }.into()),
-    Column::new("limit [s]", "", "", |of| of.limit_s.into()),
-    Column::new("averaged", "", "", |of| of.average_last_fraction.into()),
-    Column::new("cycles", "", "", |of| of.cycles.into()),
-    Column::new("tolerance", "", "", |of| of.tolerance.into()),
-    Column::new("drift tolerance", "", "", |of| of.drift_tolerance.into()),
-    Column::new("precision", "", "", |of| of.precision.as_str().into()),
-    Column::new("start", "", "", |of| of.start.as_str().into()),
+/// The settings of a job that the comparison is about.
+#[rustfmt::skip]
+pub(super) static SETTINGS: [Column<JobNumerics>; 14] = [
+    Column::new("elements", "", "elements in x, y and z", |of| of.elements.to_vec().into()),
+    Column::new("element_size_m", "m", "cube root of the volume of an element", |of| of.element_size_m.into()),
+    Column::new("nodes", "", "nodes of the pin", |of| of.nodes.into()),
+    Column::new("safety_factor", "", "time step over its limit; empty where the step is given", |of| of.safety_factor.into()),
+    Column::new("beta2", "", "β₂ of the time scheme", |of| of.beta2.into()),
+    Column::new("beta_r_s", "s", "damping β_R", |of| of.beta_r_s.into()),
+    Column::new("stop_early", "", "whether the run stops when its state is known", |of| of.stop_early.into()),
+    Column::new("limit_s", "s", "largest simulated time", |of| of.limit_s.into()),
+    Column::new("average_last_fraction", "", "last fraction of a run up to its limit that is averaged", |of| of.average_last_fraction.into()),
+    Column::new("cycles", "", "limit cycles that must repeat", |of| of.cycles.into()),
+    Column::new("tolerance", "", "largest spread of a figure over these cycles", |of| of.tolerance.into()),
+    Column::new("drift_tolerance", "", "largest drift of its mean", |of| of.drift_tolerance.into()),
+    Column::new("precision", "", "precision of the run", |of| of.precision.as_str().into()),
+    Column::new("start", "", "what state the run starts from", |of| of.start.as_str().into()),
 ];
-
-/// The settings of a job as text.
-pub(super) fn texts(numerics: &JobNumerics) -> Vec<String> {
-    SETTINGS.iter().map(|setting| value::rounded_text(&setting.value(numerics))).collect()
-}

@@ -3,13 +3,15 @@
 use crate::analysis::{JobRecord, Obstacle, Outcome};
 use crate::publish::value;
 use crate::report::row::{JobNumerics, JobRow, RowState};
+use serde::Serialize;
 
 /// What is wrong with a job.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Cause {
     /// `failed` or `not periodic`.
     pub what: &'static str,
     /// Equal for jobs with the same cause, even if the numbers in the message differ.
+    #[serde(skip)]
     pub class: String,
     /// The cause in words, with the numbers of one job.
     pub why: String,

@@ -3,12 +3,13 @@
 use super::cause::Cause;
 use crate::publish::value;
 use crate::report::parameters::{MU, OMEGA, assignment, is_further, range};
+use serde::Serialize;
 use serde_json::Value;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
 
 /// Jobs that are connected in the grid and in trouble for the same cause.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Region {
     /// Number of these jobs.
     pub jobs: usize,
@@ -17,6 +18,7 @@ pub struct Region {
     /// These ranges in words, without parameters that are equal in all jobs; empty if they cover the whole grid.
     pub place: String,
     /// The cause, with the numbers of the first of these jobs.
+    #[serde(flatten)]
     pub cause: Cause,
     /// Key of the first of these jobs.
     pub example: String,

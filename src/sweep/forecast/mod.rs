@@ -3,14 +3,14 @@
 //! ```text
 //! Plan (workloads) ─┐
 //! states of jobs ───┼─► Forecast
-//! Speed (measured) ─┘
+//! Speed ────────────┘
 //! ```
 
 mod memory;
 mod speed;
 mod time;
 
-pub use speed::{Kind, Speed};
+pub use speed::Speed;
 pub use time::TimeRange;
 
 use super::error::SweepError;
@@ -21,23 +21,28 @@ use crate::spec::{Precision, StabilityMethod};
 use crate::study::Job;
 use indexmap::IndexMap;
 use memory::memory_here_bytes;
+use serde::Serialize;
 use std::collections::HashMap;
 use std::time::Duration;
 use time::{Tasks, per_cost_s};
 
 /// What a study takes.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Forecast {
     /// Number of jobs.
     pub jobs: usize,
     /// The states of the jobs that the database has; `None` without a database.
+    #[serde(rename = "database")]
     pub known: Option<Known>,
     /// The jobs by mesh and time step, those that take longest first.
     pub groups: Vec<Group>,
     /// Number of threads.
     pub threads: usize,
     /// The time for the jobs that are left; `None` if none is left.
+    #[serde(rename = "time_s")]
     pub time: Option<TimeRange>,
+    /// What the time is based on.
+    pub speed: Speed,
     /// Memory \[byte\] of the process at its largest, with one batch on each thread.
     pub memory_bytes: f64,
     /// The memory \[byte\] of this machine, if it is known.
@@ -49,7 +54,7 @@ pub struct Forecast {
 }
 
 /// Jobs that the database has, by state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Known {
     /// Jobs that are done.
     pub done: usize,
@@ -60,9 +65,10 @@ pub struct Known {
 }
 
 /// Jobs with the same mesh, precision and time step.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Group {
     /// What they take.
+    #[serde(flatten)]
     pub workload: Workload,
     /// Number of jobs, done or not.
     pub jobs: usize,
@@ -71,12 +77,16 @@ pub struct Group {
     /// Number of steps up to that limit.
     pub steps: u64,
     /// Number of jobs that a thread advances together.
+    #[serde(rename = "jobs_together")]
     pub together: usize,
     /// Memory \[byte\] of a thread that advances them.
+    #[serde(rename = "thread_memory_bytes")]
     pub memory_bytes: f64,
     /// Memory \[byte\] that their complex modes take on all threads together; 0 if none are computed.
+    #[serde(rename = "modes_memory_bytes")]
     pub modes_bytes: f64,
     /// Their cost up to their limits, in node-steps.
+    #[serde(skip)]
     node_steps: f64,
 }
 
@@ -86,17 +96,15 @@ const PROCESS_BYTES: f64 = 12.0e6;
 /// Disk space of a new database, and of each job in it with its result \[byte\].
 const DATABASE_BYTES: [f64; 2] = [90.0e3, 3.8e3];
 
-/// A study that is expected to take less time than this \[s\] needs no measurement: an earlier one or what is typical will do.
-const SHORT_S: f64 = 1.0;
-
 /// Jobs that take longer than this store their states: two intervals of checkpoints.
 const LONG_JOB: Duration = Duration::from_mins(2);
 
-/// The range of seconds of a thread per unit of a job's cost, from the cached speed of this machine with so many threads, or
-/// from what is typical. Nothing is measured.
-pub fn expected_s_per_cost(threads: usize) -> [f64; 2] {
-    let cached = [Kind::Rigid, Kind::Large, Kind::Elastic].map(|kind| Speed::cached(kind, threads));
-    per_cost_s(cached.into_iter().flatten().next().unwrap_or(Speed::TYPICAL))
+/// The range of seconds of a thread per unit of a job's cost, at the speed of the finished jobs in a database.
+///
+/// # Errors
+/// If the database cannot be read.
+pub async fn expected_s_per_cost(queue: &mut Queue) -> Result<[f64; 2], SweepError> {
+    Ok(per_cost_s(Speed::read(queue).await?))
 }
 
 impl Known {
@@ -116,16 +124,16 @@ impl Known {
 
 impl Forecast {
     /// What `plan` takes on this machine with so many threads. Jobs that are done or have failed in the database `queue` are
-    /// not run again. If the study is not short, the speed of this machine is measured unless it was lately.
+    /// not run again. Its finished jobs give the speed.
     ///
     /// # Errors
     /// If the database cannot be read.
     pub async fn new(plan: &Plan, queue: Option<&mut Queue>, threads: usize) -> Result<Self, SweepError> {
-        let states = match queue {
-            None => None,
+        let (states, speed) = match queue {
+            None => (None, Speed::TYPICAL),
             Some(queue) => {
                 let keys: Vec<&str> = plan.jobs().iter().map(|job| job.key.as_str()).collect();
-                Some(queue.states(&keys).await?)
+                (Some(queue.states(&keys).await?), Speed::read(queue).await?)
             }
         };
         let is_left = |job: &Job| {
@@ -141,14 +149,7 @@ impl Forecast {
             }
         }
         let threads = threads.min(plan.jobs().len()).max(1);
-        let time = tasks.time(threads, |kind| {
-            let is_short = tasks.is_shorter_than(SHORT_S, threads);
-            if is_short {
-                Speed::cached(kind, threads).unwrap_or(Speed::TYPICAL)
-            } else {
-                Speed::here(kind, threads)
-            }
-        });
+        let time = tasks.time(threads, speed);
         let groups = groups(plan, threads);
         let running = running(&groups, threads);
         let is_long = time.as_ref().is_some_and(|time| time.longest_job >= LONG_JOB);
@@ -170,6 +171,7 @@ impl Forecast {
             groups,
             threads,
             time,
+            speed,
         })
     }
 

@@ -69,7 +69,6 @@ pub fn follow(name: &str, page: &str) -> Option<Written> {
             .env("PYTHONDONTWRITEBYTECODE", "1")
             .env("TRIBOSWEEP_PROGRAM", TRIBOSWEEP)
             .env("MPLBACKEND", "agg")
-            .env("XDG_CACHE_HOME", env!("CARGO_TARGET_TMPDIR"))
             .env("TMPDIR", folder.path("bin"))
             .env_remove("TRIBOSWEEP_DB")
             .output()

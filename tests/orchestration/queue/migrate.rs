@@ -1,10 +1,8 @@
 //! Migrations of databases with earlier schemas.
 
-use std::fs::File;
-
 use sqlx::migrate::{Migration, MigrationType, Migrator};
 use sqlx::{Connection, SqlSafeStr, SqliteConnection};
-use tribosweep::queue::{JobState, Queue, QueueError, Settings, TakenBack};
+use tribosweep::queue::{JobState, Queue, Settings, TakenBack};
 
 use crate::support::{Sandbox, claim, counts, done, finish, keys, of};
 
@@ -111,27 +109,6 @@ async fn references_hold_after_the_migration() {
     ] {
         assert_eq!(sqlx::query(statement).execute(&mut raw).await.is_ok(), is_allowed, "{statement}");
     }
-}
-
-/// Protects: while a worker of the earlier version is running, the database is not migrated, because that version does
-/// not support owners.
-#[tokio::test]
-async fn an_older_worker_is_waited_for() {
-    let sandbox = Sandbox::new();
-    first_schema(&sandbox).await.close().await.unwrap();
-    let lock = File::create(sandbox.folder.path().join("sweep.db.worker")).unwrap();
-    lock.lock().unwrap();
-    let error = Queue::open(sandbox.location(), sandbox.clock.clock()).await.unwrap_err();
-    assert!(matches!(error, QueueError::OlderWorking { .. }), "{error:?}");
-    let mut raw = sandbox.raw().await;
-    let running: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM jobs WHERE state = 'running'")
-        .fetch_one(&mut raw)
-        .await
-        .unwrap();
-    assert_eq!(running, 1, "the database is unchanged");
-    drop(lock);
-    sandbox.open().await;
-    assert!(!sandbox.folder.path().join("sweep.db.worker").exists(), "the lock file is deleted");
 }
 
 /// Protects: a migration that fails changes nothing and reports the reason, and the next opening repeats it.

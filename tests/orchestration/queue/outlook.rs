@@ -33,7 +33,7 @@ async fn active_workers_are_counted(sandbox: &Sandbox) {
     assert_eq!(own.active_workers().await.unwrap(), active(0, 0));
 }
 
-/// Protects: the timings are the costs and run times of the study's done jobs, and of no others.
+/// Protects: the timings are the costs and run times of the done jobs of a study, and of no others, or of the database.
 async fn timings_are_those_of_done_jobs(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let mut own = study("a", &[]);
@@ -41,12 +41,15 @@ async fn timings_are_those_of_done_jobs(sandbox: &Sandbox) {
     queue.submit(&own).await.unwrap();
     queue.submit(&study("b", &["other"])).await.unwrap();
     claim(&mut queue, Scope::All, 4).await;
-    assert!(queue.timings("a").await.unwrap().is_empty());
+    assert!(queue.timings(&of("a")).await.unwrap().is_empty());
     finish(&mut queue, "x", 1, done("record")).await;
     finish(&mut queue, "y", 1, failed("error")).await;
     finish(&mut queue, "other", 1, done("record")).await;
-    assert_eq!(queue.timings("a").await.unwrap(), [(8.0, 2.5)]);
-    assert!(matches!(queue.timings("c").await, Err(QueueError::UnknownStudy { .. })));
+    assert_eq!(queue.timings(&of("a")).await.unwrap(), [(8.0, 2.5)]);
+    let mut all = queue.timings(&Scope::All).await.unwrap();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert_eq!(all, [(1.0, 2.5), (8.0, 2.5)]);
+    assert!(matches!(queue.timings(&of("c")).await, Err(QueueError::UnknownStudy { .. })));
 }
 
 /// Protects: every change of a study's jobs is visible in their counts or in the number of starts.
@@ -77,10 +80,11 @@ async fn timings_of_many_jobs_are_a_sample(sandbox: &Sandbox) {
              SELECT id, 1, '', cost, 0 FROM jobs",
         )
         .await;
-    let timings = queue.timings("a").await.unwrap();
+    let timings = queue.timings(&of("a")).await.unwrap();
     assert_eq!(timings.len(), 834);
     let mean = timings.iter().map(|(cost, _)| cost).sum::<f64>() / timings.len() as f64;
     assert!((mean - 1_250.0).abs() < 5.0, "{mean}");
+    assert_eq!(queue.timings(&Scope::All).await.unwrap().len(), 833, "every third");
 }
 
 /// Protects: results are grouped by provenance, with the number of jobs and the times of the attempts that count.
