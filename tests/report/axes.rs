@@ -6,8 +6,9 @@ use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::publish::chart::Axis;
 use tribosweep::report::figure::{Plot, figures};
 use tribosweep::report::tables::{self, Quantity};
-use tribosweep::report::{JobRow, RowState, SCALARS, Scalar, View, name_and_unit, write};
+use tribosweep::report::{JobRow, RowState, SCALARS, Scalar, View, columns, write};
 use tribosweep::study::PARAMETERS;
+use tribosweep::units::name_and_unit;
 
 /// Two speeds, two μ and three stiffnesses of the pin.
 fn study() -> Vec<JobRow> {
@@ -134,17 +135,25 @@ fn every_scalar_has_a_figure_and_a_table() {
     );
 }
 
-/// Protects: the unit at the end of a parameter's name is its unit in the registry, so that values are shown in it.
+/// Words of units at the ends of names.
+const UNIT_WORDS: [&str; 15] =
+    ["rpm", "deg", "rad", "kg", "m", "m2", "m3", "s", "s2", "n", "nm", "pa", "hz", "j", "per"];
+
+/// Protects: the unit at the end of a name is the whole unit, and a name with a unit that nobody knows is noticed: no word of a unit is left
+/// in front of it. All parameters and columns have their units from their names.
 #[test]
 fn names_end_with_their_units() {
-    for parameter in PARAMETERS {
-        assert_eq!(
-            name_and_unit(parameter.name).1,
-            parameter.unit().unwrap_or_default(),
-            "{}",
-            parameter.name
-        );
+    let parameters = PARAMETERS.iter().map(|parameter| (parameter.name, parameter.unit));
+    let columns = columns::fixed().map(|own| (&*own.column.head.name, &*own.column.head.unit));
+    let mut with_unit = 0;
+    for (name, unit) in parameters.chain(columns) {
+        let (stem, of_name) = name_and_unit(name);
+        assert_eq!(of_name, unit, "{name}");
+        let last = stem.rsplit('_').next().unwrap();
+        assert!(!UNIT_WORDS.contains(&last), "{name}: {stem} [{unit}]");
+        with_unit += usize::from(!unit.is_empty());
     }
+    assert!(with_unit > 90, "{with_unit}");
 }
 
 /// Protects: the values of a logarithmic range have short and different heads.

@@ -6,8 +6,15 @@ use crate::synthetic::{failed, record, row, with};
 use std::fs;
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::pareto::refinement::{Level, Unclean, limit, observed_order};
-use tribosweep::report::pareto::{Direction, ParetoError, chart, compare, markdown, on_front, write};
+use tribosweep::report::pareto::{
+    self, Comparison, Direction, ParetoError, chart, markdown, on_front, write,
+};
 use tribosweep::report::{JobNumerics, JobRow, RowState};
+use tribosweep::study::is_numerics;
+
+fn compare(rows: &[JobRow]) -> Result<Comparison<'_>, ParetoError> {
+    pareto::compare(rows, is_numerics)
+}
 
 /// A cube of n × n × n elements of 1/n mm; the step is in proportion.
 fn numerics(n: usize, safety_factor: f64) -> JobNumerics {

@@ -180,7 +180,7 @@ fn the_grid_has_exactly_the_parameters_of_the_registry() {
     assert_eq!(found, names);
     assert_eq!(grid["additionalProperties"], Value::Bool(false));
     for parameter in PARAMETERS {
-        assert_eq!(grid["properties"][parameter.name]["description"], parameter.doc);
+        assert_eq!(grid["properties"][parameter.name]["description"], parameter.doc());
     }
 }
 

@@ -29,8 +29,13 @@ pub struct Case<'a> {
 
 impl<'a> Case<'a> {
     /// The case of `jobs`, which are two or more. `all` are all of its rows, finished or not.
-    pub(super) fn new(jobs: Vec<DoneJob<'a>>, all: &[&JobRow], names_damping: bool) -> Self {
-        let physics = settings::physics_in_words(jobs[0].row);
+    pub(super) fn new(
+        jobs: Vec<DoneJob<'a>>,
+        all: &[&JobRow],
+        names_damping: bool,
+        is_numerics: fn(&str) -> bool,
+    ) -> Self {
+        let physics = settings::physics_in_words(jobs[0].row, is_numerics);
         let damping = value::rounded(jobs[0].numerics.beta_r_s);
         let caption = if names_damping { format!("{physics}, β_R = {damping} s") } else { physics };
         let reference = reference::of(&jobs);

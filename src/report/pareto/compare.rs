@@ -17,12 +17,13 @@ pub struct Comparison<'a> {
 
 /// Compares the finished jobs of each physical case with the finest of them.
 ///
-/// A job that is in `rows` twice (of two studies that share it) counts once.
+/// A job that is in `rows` twice (of two studies that share it) counts once. `is_numerics` says of a parameter whether it changes how a
+/// physical case is solved and not the case.
 ///
 /// # Errors
 /// If there is nothing to compare: fewer than two jobs are done, none of them are of the same physical case,
 /// or their numerics or run times are not known.
-pub fn compare(rows: &[JobRow]) -> Result<Comparison<'_>, ParetoError> {
+pub fn compare(rows: &[JobRow], is_numerics: fn(&str) -> bool) -> Result<Comparison<'_>, ParetoError> {
     let rows = distinct(rows);
     let done = rows.iter().filter(|row| row.record().is_some()).count();
     if done < 2 {
@@ -45,14 +46,14 @@ pub fn compare(rows: &[JobRow]) -> Result<Comparison<'_>, ParetoError> {
         for part in parts {
             let jobs: Vec<DoneJob> = part.iter().filter_map(|row| DoneJob::of(row)).collect();
             if jobs.len() < 2 {
-                let words = super::settings::physics_in_words(part[0]);
+                let words = super::settings::physics_in_words(part[0], is_numerics);
                 comparison.left_out.push(format!(
                     "{words}: {} of {} done",
                     jobs.len(),
                     count(part.len(), "job")
                 ));
             } else {
-                comparison.cases.push(Case::new(jobs, &part, by_damping));
+                comparison.cases.push(Case::new(jobs, &part, by_damping, is_numerics));
             }
         }
     }

@@ -1,36 +1,13 @@
-//! The numerics of a job in words, and the parameters of a grid that belong to them.
+//! The physics and the numerics of a job in words.
 
 use crate::publish::table::Column;
 use crate::publish::value;
 use crate::report::parameters::{MU, OMEGA, assignments};
 use crate::report::row::{JobNumerics, JobRow};
 
-/// Grid parameters that change the numerics and not the physical case.
-const NUMERICS: [&str; 19] = [
-    "elements",
-    "nx",
-    "ny",
-    "nz",
-    "beta2",
-    "beta_r_s",
-    "safety_factor",
-    "time_step_s",
-    "precision",
-    "limit_s",
-    "stop_early",
-    "average_last_fraction",
-    "cycles",
-    "tolerance",
-    "drift_tolerance",
-    "regime_threshold",
-    "decay_observation_s",
-    "start",
-    "stability",
-];
-
 /// The physical parameters of a job in words, ω and μ first.
-pub(super) fn physics_in_words(row: &JobRow) -> String {
-    let further = row.further().filter(|(name, _)| !NUMERICS.contains(name));
+pub(super) fn physics_in_words(row: &JobRow, is_numerics: fn(&str) -> bool) -> String {
+    let further = row.further().filter(|(name, _)| !is_numerics(name));
     let further = further.map(|(name, value)| (name, value.clone()));
     let own = [OMEGA, MU].map(|name| (name, row.parameter(name)));
     assignments(own.into_iter().chain(further))

@@ -1,19 +1,19 @@
 //! Coefficients of friction that nothing uses.
 
-use super::{Doubt, Shared, Warning, job_warnings};
+use super::{Doubt, Shared, Warning, job_warnings, owned};
 use crate::spec::{Contact, FrictionLaw, JobSpec};
 use crate::study::definition::Study;
 use strum::VariantArray;
 
 /// A coefficient of friction: its field, its name in a contact, and its value there.
-type Coefficient = (&'static [&'static str], &'static str, fn(&Contact) -> Option<f64>);
+type Coefficient = (&'static str, &'static str, fn(&Contact) -> Option<f64>);
 
 /// The coefficients that not every law uses.
 const COEFFICIENTS: [Coefficient; 4] = [
-    (&["scene.contact.mu_static"], "mu_static", |contact| contact.mu_static),
-    (&["scene.contact.speed_m_s"], "speed_m_s", |contact| contact.speed_m_s),
-    (&["scene.contact.slope_s_m"], "slope_s_m", |contact| contact.slope_s_m),
-    (&["scene.contact.length_m"], "length_m", |contact| contact.length_m),
+    ("scene.contact.mu_static", "mu_static", |contact| contact.mu_static),
+    ("scene.contact.speed_m_s", "speed_m_s", |contact| contact.speed_m_s),
+    ("scene.contact.slope_s_m", "slope_s_m", |contact| contact.slope_s_m),
+    ("scene.contact.length_m", "length_m", |contact| contact.length_m),
 ];
 
 /// The coefficients of some jobs that are not used by the law of any of `all` jobs, with the number of jobs that have each of them and the
@@ -34,7 +34,7 @@ fn unused<'a>(
         format!("{word} {}", names.join(", "))
     };
     let mut found = Vec::new();
-    for (fields, name, value) in COEFFICIENTS {
+    for (field, name, value) in COEFFICIENTS {
         let uses = |law: &FrictionLaw| law.coefficients().contains(&name);
         let mut given = jobs.clone().enumerate().filter(|(_, job)| value(&job.scene.contact).is_some());
         let Some((first, _)) = given.next().filter(|_| !laws.iter().any(uses)) else { continue };
@@ -42,7 +42,7 @@ fn unused<'a>(
         let verb = if laws.len() == 1 { "does" } else { "do" };
         let doubt = Doubt {
             kind: "unused",
-            fields,
+            fields: owned(&[field]),
             size: 0.0,
             message: format!("without effect: the friction {} {verb} not use it", in_words(&laws)),
             help: format!(
