@@ -1,4 +1,4 @@
-//! Conversions to SI units, and durations in units for a reader.
+//! Units: those at the ends of names, conversions to SI, and durations in units for a reader.
 
 use serde::Serializer;
 use std::f64::consts::PI;
@@ -7,6 +7,57 @@ use std::time::Duration;
 /// Angular speed [rad/s] of `omega_rpm` revolutions per minute.
 pub fn rad_per_s_from_rpm(omega_rpm: f64) -> f64 {
     omega_rpm * (2.0 * PI / 60.0)
+}
+
+/// The endings of names that are units. Longer endings come first.
+const ENDINGS: [(&str, &str); 20] = [
+    ("_nm_s_rad", "N m s/rad"),
+    ("_nm_rad", "N m/rad"),
+    ("_kg_m3", "kg/m³"),
+    ("_kg_m2", "kg m²"),
+    ("_n_s_m", "N s/m"),
+    ("_n_m", "N/m"),
+    ("_pa_m", "Pa/m"),
+    ("_s_m", "s/m"),
+    ("_per_s", "1/s"),
+    ("_m_s2", "m/s²"),
+    ("_m_s", "m/s"),
+    ("_rpm", "rpm"),
+    ("_deg", "°"),
+    ("_pa", "Pa"),
+    ("_hz", "Hz"),
+    ("_kg", "kg"),
+    ("_n", "N"),
+    ("_m", "m"),
+    ("_s", "s"),
+    ("_j", "J"),
+];
+
+/// A name without its unit, and the unit; empty if the name has none. Every name of a number with a unit ends with it: this is the only
+/// place that says which unit a field, a parameter or a quantity has.
+pub const fn name_and_unit(name: &str) -> (&str, &'static str) {
+    let mut number = 0;
+    while number < ENDINGS.len() {
+        let (ending, unit) = ENDINGS[number];
+        if let Some(stem) = without_ending(name, ending.as_bytes()) {
+            return (stem, unit);
+        }
+        number += 1;
+    }
+    (name, "")
+}
+
+/// What is before the ending. Constants need the unit of a name, and the methods of texts are not for constants.
+const fn without_ending<'a>(name: &'a str, ending: &[u8]) -> Option<&'a str> {
+    let Some(start) = name.len().checked_sub(ending.len()) else { return None };
+    let mut at = 0;
+    while at < ending.len() {
+        if name.as_bytes()[start + at] != ending[at] {
+            return None;
+        }
+        at += 1;
+    }
+    Some(name.split_at(start).0)
 }
 
 /// A duration of so many seconds for a reader, in the unit that fits it: `350 ms`, `12.5 s`, `3.8 min`, `2.5 h`,
@@ -35,6 +86,23 @@ pub fn as_seconds<S: Serializer>(duration: &Duration, serializer: S) -> Result<S
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Protects: the longest unit at the end of a name is its unit, and a name without a unit stays as it is.
+    #[test]
+    fn units_are_at_the_ends_of_names() {
+        let cases = [
+            ("slip_speed_max_m_s", ("slip_speed_max", "m/s")),
+            ("growth_rate_per_s", ("growth_rate", "1/s")),
+            ("inertia_x_kg_m2", ("inertia_x", "kg m²")),
+            ("omega_rpm", ("omega", "rpm")),
+            ("μ_s", ("μ", "s")),
+            ("mu_star", ("mu_star", "")),
+            ("s", ("s", "")),
+        ];
+        for (name, parts) in cases {
+            assert_eq!(name_and_unit(name), parts);
+        }
+    }
 
     /// Protects: every duration is in the unit that a reader expects, with and without decimals.
     #[test]

@@ -16,10 +16,10 @@ const MAY_USE: [(&str, &[&str]); 16] = [
     ("solver", &["random", "spec", "units"]),
     ("stability", &["solver", "spec", "units"]),
     ("analysis", &["solver", "spec", "stability", "units"]),
-    ("study", &["spec"]),
+    ("study", &["spec", "units"]),
     ("publish", &["units"]),
     ("inspect", &["analysis", "publish", "solver", "spec", "units"]),
-    ("report", &["analysis", "publish", "random"]),
+    ("report", &["analysis", "publish", "random", "units"]),
     ("worker", &["analysis", "queue", "spec", "units"]),
     // Of `publish` it uses drawings and the error of `report`.
     ("sweep", &["analysis", "publish", "queue", "report", "solver", "spec", "study", "units", "worker"]),

@@ -31,6 +31,7 @@ pub mod cycles;
 pub mod decay;
 mod drive;
 mod error;
+mod example;
 pub mod figures;
 mod job;
 pub mod lane;

@@ -28,19 +28,6 @@ pub struct CoarseStart {
 }
 
 impl CoarseStart {
-    /// One in which every optional figure is present.
-    #[cfg(test)]
-    pub(super) fn of_tests() -> Self {
-        let (mu_star, frequency_hz) = (Some(0.3), Some(15e3));
-        Self {
-            elements: [6, 8, 5],
-            outcome: Some(Outcome::Periodic),
-            simulated_s: 0.002,
-            mu_star,
-            frequency_hz,
-        }
-    }
-
     /// Whether the job started from the limit cycle of the coarser mesh.
     pub fn is_used(&self) -> bool {
         self.outcome == Some(Outcome::Periodic)

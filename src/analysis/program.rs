@@ -255,27 +255,6 @@ fn interpolated(curve: &[(f64, f64)], at: f64) -> Option<f64> {
 }
 
 #[cfg(test)]
-impl ProgramWindow {
-    /// A window in which every optional figure is present.
-    pub(super) fn of_tests() -> Self {
-        Self {
-            time_s: [0.5, 0.75],
-            direction: Direction::Up,
-            omega_rpm: 7.5,
-            load_n: 30.5,
-            mu_star: 0.3,
-            mu_star_contact: 0.31,
-            frequency_hz: Some(1.5e4),
-            n_amplitude: 0.25,
-            y_peak_to_peak_m: 1e-6,
-            stick_share: 0.25,
-            slip_share: 0.5,
-            separated_share: 0.125,
-        }
-    }
-}
-
-#[cfg(test)]
 mod tests {
     use super::*;
 
@@ -284,7 +263,7 @@ mod tests {
             direction,
             omega_rpm,
             mu_star,
-            ..ProgramWindow::of_tests()
+            ..ProgramWindow::example()
         };
         points.iter().map(window).collect()
     }

@@ -228,84 +228,6 @@ mod tests {
     use super::*;
     use serde_json::Value;
 
-    /// A record in which every optional field is present.
-    fn full() -> JobRecord {
-        let disk = ElasticDisk {
-            elements: [1, 2, 3],
-            track_element_m: [0.1, 0.2, 0.3],
-            longest_edge_m: 0.5,
-            stages: 2,
-            sweeps_mean: 4.5,
-            sweeps_max: 7.0,
-            residual_max: 1e-12,
-        };
-        let node = ObservedNode {
-            name: "front_centre".to_owned(),
-            y_peak_to_peak_m: 1e-6,
-            lift_max_m: 1e-7,
-            sigma_n_max_pa: 1e6,
-            slip_speed_max_m_s: 0.1,
-        };
-        JobRecord {
-            outcome: Outcome::NotPeriodic,
-            regime: Regime::Undecided,
-            mu_star: 0.3,
-            mu_star_se: 0.001,
-            mu_star_contact: 0.3,
-            frequency_hz: Some(15e3),
-            stick_share: 0.25,
-            slip_share: 0.5,
-            separated_share: 0.25,
-            n_over_f_min: 0.5,
-            n_over_f_max: 1.5,
-            sigma_n_max_pa: 1e6,
-            slip_speed_max_m_s: 0.1,
-            lift_max_m: 1e-7,
-            cycles: 20,
-            crossings_per_cycle: 1,
-            simulated_s: 0.01,
-            window_start_s: 0.005,
-            steps: 40_000,
-            time_step_s: 2.5e-7,
-            time_step_limit_s: 5e-7,
-            clamp_width_m: 0.001,
-            energy_residual: 1e-9,
-            macroscopic_identity_residual: 1e-4,
-            energy_identity_residual: 1e-4,
-            contact_loss_share: 0.01,
-            mu_reduction_stick: 0.05,
-            mu_reduction_slip: 0.02,
-            growth_rate_per_s: Some(-200.0),
-            obstacle: Some(Obstacle::Unsteady { figure: "period".to_owned(), spread: 0.1, drift: 0.2 }),
-            stability: Some(SlidingStability {
-                decided: false,
-                contact_nodes: 4,
-                lifted_nodes: 0,
-                mu_star: 0.4,
-                band_hz: 5e4,
-                above_band: AboveBand::Damped,
-                damped_above_hz: Some(4e4),
-                modes: vec![ComplexMode {
-                    frequency_hz: 1.5e4,
-                    growth_rate_per_s: 100.0,
-                    damping_ratio: -1e-3,
-                    residual: 1e-9,
-                    is_converged: true,
-                }],
-            }),
-            start: Some(CoarseStart::of_tests()),
-            disk: Some(disk),
-            holder: vec![HolderMotion {
-                direction: "y".to_owned(),
-                peak_to_peak_m: 1e-6,
-                acceleration_rms_m_s2: 0.5,
-            }],
-            windows: vec![ProgramWindow::of_tests()],
-            energy: EnergyTotals::default(),
-            nodes: vec![node.clone(), node],
-        }
-    }
-
     /// The paths of all real numbers.
     fn real_numbers(at: &str, value: &Value, found: &mut Vec<String>) {
         match value {
@@ -328,12 +250,12 @@ mod tests {
     /// number that is not finite is named.
     #[test]
     fn every_number_is_looked_at() {
-        let stored = serde_json::to_value(full()).unwrap();
+        let stored = serde_json::to_value(JobRecord::example()).unwrap();
         let mut paths = Vec::new();
         real_numbers("", &stored, &mut paths);
         assert!(paths.len() > 60, "{paths:?}");
         let record: JobRecord = serde_json::from_value(stored.clone()).unwrap();
-        assert_eq!((record.non_finite_number(), &record), (None, &full()));
+        assert_eq!((record.non_finite_number(), &record), (None, &JobRecord::example()));
         for path in &paths {
             let mut without = stored.clone();
             *without.pointer_mut(path).unwrap() = Value::Null;
@@ -341,10 +263,10 @@ mod tests {
             assert!(read.is_err() || read.unwrap() != record, "{path}");
         }
 
-        let mut record = full();
+        let mut record = JobRecord::example();
         record.nodes[1].sigma_n_max_pa = f64::INFINITY;
         assert_eq!(record.non_finite_number().as_deref(), Some("nodes[1].sigma_n_max_pa"));
-        let mut record = full();
+        let mut record = JobRecord::example();
         record.frequency_hz = Some(f64::NAN);
         assert_eq!(record.non_finite_number().as_deref(), Some(OPTIONAL));
     }

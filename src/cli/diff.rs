@@ -57,7 +57,7 @@ fn as_json(Args { a, b, .. }: &Args, difference: &Difference, jobs: [&[Job]; 2])
         .inputs
         .iter()
         .map(|InputDifference { parameter, a, b }| {
-            json!({ "name": parameter.name, "unit": parameter.unit(), "a": a, "b": b })
+            json!({ "name": parameter.name, "unit": Some(parameter.unit).filter(|unit| !unit.is_empty()), "a": a, "b": b })
         })
         .collect();
     let json = json!({

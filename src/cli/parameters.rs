@@ -30,13 +30,13 @@ pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
 fn as_json(parameter: &Parameter) -> Value {
     json!({
         "name": parameter.name,
-        "unit": parameter.unit(),
-        "meaning": parameter.description(),
+        "unit": Some(parameter.unit).filter(|unit| !unit.is_empty()),
+        "meaning": parameter.meaning,
         "field": parameter.field(),
     })
 }
 
 fn cells(parameter: &Parameter) -> [String; 3] {
-    let unit = parameter.unit().map_or_else(String::new, |unit| format!("[{unit}]"));
-    [parameter.name.to_owned(), unit, parameter.description().to_owned()]
+    let unit = if parameter.unit.is_empty() { String::new() } else { format!("[{}]", parameter.unit) };
+    [parameter.name.to_owned(), unit, parameter.meaning.to_owned()]
 }

@@ -7,6 +7,7 @@ use super::rows;
 use crate::exit;
 use crate::queue::Location;
 use crate::report::pareto;
+use crate::study::is_numerics;
 
 /// Arguments of `pareto`.
 #[derive(Debug, clap::Args)]
@@ -22,8 +23,8 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let (names, rows) = rows::of_studies(&args.studies, db)?;
     let title = names.join(", ");
-    let comparison =
-        pareto::compare(&rows).map_err(|error| CliError::Refused(format!("{title}: {error}")))?;
+    let comparison = pareto::compare(&rows, is_numerics)
+        .map_err(|error| CliError::Refused(format!("{title}: {error}")))?;
     print(&pareto::markdown(&comparison))?;
     let folder = args.out.of(&names[0]);
     pareto::write(&comparison, &folder, &title)?;

@@ -84,7 +84,7 @@ impl Comparison {
             return None;
         }
         let scalars: Vec<&'static Scalar> =
-            [*MU_STAR, *FREQUENCY].into_iter().chain(view.y.iter().copied()).collect();
+            [MU_STAR, FREQUENCY].into_iter().chain(view.y.iter().copied()).collect();
         let by = Some(layout.by).filter(|by| *by != SOURCE);
         let outer = layout.further.iter().copied().chain(by);
         let names: Vec<&str> = outer.chain(layout.scattered.iter().copied()).chain([layout.axis]).collect();

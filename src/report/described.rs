@@ -1,6 +1,6 @@
 //! The columns of all tables of reports, for the page of columns.
 
-use super::columns::{any_quantity, selected};
+use super::columns::{any_quantity, columns, selected};
 use super::figure::{DataFile, Plot, RESIDUALS, RUN_TIMES};
 use super::{comparison_files, growth, pareto, sensitivity, spectra, stability, tables, windows};
 use crate::publish::table::{FileColumns, Head};
@@ -23,7 +23,7 @@ pub fn columns_of_files() -> Vec<FileColumns> {
             data.push(FileColumns { files: vec![file], lines: "A line is a job of a figure.", heads });
         }
     }
-    let mut heads: Vec<Head> = selected(&["regime"]).map(|own| own.column.head.clone()).collect();
+    let mut heads: Vec<Head> = selected(&columns(["regime"])).map(|own| own.column.head.clone()).collect();
     heads.push(any_quantity());
     data.push(FileColumns {
         files: vec!["QUANTITY_points.csv".to_owned()],

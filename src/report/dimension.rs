@@ -1,9 +1,10 @@
 //! How the values of one parameter are written and drawn: its unit, the labels of its values, its axis.
 
-use super::parameters::{self, MU, OMEGA, SOURCE, name_and_unit, with_unit};
+use super::parameters::{self, MU, OMEGA, SOURCE, with_unit};
 use super::row::JobRow;
 use crate::publish::chart::Axis;
 use crate::publish::value;
+use crate::units::name_and_unit;
 use serde_json::Value;
 use std::collections::HashMap;
 

@@ -74,7 +74,7 @@ pub(super) fn selection<'a>(
     stem: impl Into<Cow<'static, str>>,
     rows: impl IntoIterator<Item = &'a JobRow>,
     further: &[&str],
-    columns: &[&str],
+    columns: &[&'static ExportColumn],
 ) -> Table {
     let selected = selected(columns).cloned().chain(of_parameters(further.iter().copied()));
     Table::of(stem, &columns_of(selected), rows)

@@ -62,11 +62,10 @@ pub use inspections::{FoundInspection, INSPECTIONS, inspections};
 pub use measurement::{MeasuredValue, Measurement};
 #[cfg(feature = "cli")]
 pub use parameters::assignment;
-pub use parameters::name_and_unit;
 pub use program::chart as program_chart;
 pub use provenance::{BuildInfo, Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};
-pub use scalar::{SCALARS, Scalar};
+pub use scalar::{FREQUENCY, MU_STAR, SCALARS, Scalar};
 pub use stability::{Along, PAGE as STABILITY_PAGE, SHAPES, modes_table, thresholds_table, write_stability};
 pub use stability_point::StabilityPoint;
 pub use view::View;

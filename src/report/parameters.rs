@@ -2,6 +2,7 @@
 
 use crate::publish::table::Head;
 use crate::publish::value::{self, short, text};
+use crate::units::name_and_unit;
 use serde_json::Value;
 
 /// The parameter that is the disk speed.
@@ -14,36 +15,6 @@ pub(super) const SOURCE: &str = "source";
 /// Whether a parameter is neither ω nor μ. Those two have a place of their own in every table and figure.
 pub(super) fn is_further(name: &str) -> bool {
     name != OMEGA && name != MU
-}
-
-/// The endings of names that are units. Longer endings come first.
-const UNITS: [(&str, &str); 20] = [
-    ("_nm_s_rad", "N m s/rad"),
-    ("_nm_rad", "N m/rad"),
-    ("_kg_m3", "kg/m³"),
-    ("_kg_m2", "kg m²"),
-    ("_n_s_m", "N s/m"),
-    ("_n_m", "N/m"),
-    ("_pa_m", "Pa/m"),
-    ("_s_m", "s/m"),
-    ("_per_s", "1/s"),
-    ("_m_s2", "m/s²"),
-    ("_m_s", "m/s"),
-    ("_rpm", "rpm"),
-    ("_deg", "°"),
-    ("_pa", "Pa"),
-    ("_hz", "Hz"),
-    ("_kg", "kg"),
-    ("_n", "N"),
-    ("_m", "m"),
-    ("_s", "s"),
-    ("_j", "J"),
-];
-
-/// A name without its unit, and the unit; empty if the name has none. Every name of a number with a unit ends with it.
-pub fn name_and_unit(name: &str) -> (&str, &'static str) {
-    let split = |(ending, unit): &(&str, &'static str)| Some((name.strip_suffix(*ending)?, *unit));
-    UNITS.iter().find_map(split).unwrap_or((name, ""))
 }
 
 /// The head of a column of a parameter.

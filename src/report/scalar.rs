@@ -1,83 +1,30 @@
-//! The numbers of a record that figures and tables can show.
+//! The numbers of a record that figures and tables can show: the columns of the export that are numbers of a run.
 
-use super::columns::{self, ExportColumn};
-use super::parameters::name_and_unit;
+use super::columns::{Digits, ExportColumn, Last, Shown, column, fixed};
 use super::row::{JobRow, RowState};
 use crate::analysis::Outcome;
 use crate::publish::value;
+use std::borrow::Cow;
 use std::sync::LazyLock;
 
 /// A number that a job's record has, with its name in the export.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub struct Scalar {
     /// The name of its column in the export, with the unit at its end.
     pub name: &'static str,
     /// What it is, in words, without the unit.
     pub meaning: &'static str,
-    column: &'static ExportColumn,
+    pub(super) column: &'static ExportColumn,
+    shown: &'static Shown,
 }
 
 /// The macroscopic friction coefficient.
-pub(super) static MU_STAR: LazyLock<&Scalar> = LazyLock::new(|| known("mu_star"));
+pub static MU_STAR: &Scalar = &Scalar::of("mu_star");
 /// The frequency of the limit cycle.
-pub(super) static FREQUENCY: LazyLock<&Scalar> = LazyLock::new(|| known("frequency_hz"));
-
-/// Titles of axes, for columns whose meaning is too long for that.
-#[rustfmt::skip]
-const TITLES: [(&str, &str); 28] = [
-    ("mu_star", "macroscopic friction coefficient μ*"),
-    ("frequency_hz", "frequency"),
-    ("mu_star_contact", "μ* from the contact forces"),
-    ("stick_share", "share of stick"),
-    ("slip_share", "share of slip"),
-    ("separated_share", "share of separation"),
-    ("n_over_f_min", "smallest normal force N/F"),
-    ("n_over_f_max", "largest normal force N/F"),
-    ("sigma_n_max_pa", "largest normal contact stress"),
-    ("slip_speed_max_m_s", "largest slip speed"),
-    ("lift_max_m", "largest gap"),
-    ("growth_rate_per_s", "growth rate"),
-    ("mu_reduction_stick", "reduction of μ* by stick"),
-    ("mu_reduction_slip", "reduction of μ* by sideways slip"),
-    ("contact_loss_share", "contact loss over the work of the drive"),
-    ("cycles", "limit cycles in the window"),
-    ("crossings_per_cycle", "section crossings per limit cycle"),
-    ("simulated_s", "simulated time"),
-    ("steps", "time steps"),
-    ("time_step_s", "time step"),
-    ("energy_residual", "residual of the energy balance"),
-    ("identity_residual", "residual of the identities"),
-    ("energy_kinetic_j", "kinetic energy at the end"),
-    ("energy_elastic_j", "elastic energy at the end"),
-    ("energy_drive_work_j", "work of the drive"),
-    ("energy_friction_j", "energy dissipated by friction"),
-    ("energy_damping_j", "energy dissipated by damping"),
-    ("energy_contact_loss_j", "energy lost in contact impacts"),
-];
-
-/// Whether a column has the numbers of runs: neither text, nor what only some runs that are not periodic have.
-fn is_scalar(column: &ExportColumn) -> bool {
-    let name = &*column.column.head.name;
-    let is_text = matches!(name, "regime" | "decided_by" | "start_outcome");
-    column.group != columns::Group::Job && !is_text && !name.starts_with("obstacle")
-}
+pub static FREQUENCY: &Scalar = &Scalar::of("frequency_hz");
 
 /// All of them: the columns of the export that are numbers of a record.
-pub static SCALARS: LazyLock<Vec<Scalar>> = LazyLock::new(|| {
-    let numbers = columns::PLAIN.iter().chain(&columns::FURTHER).filter(|column| is_scalar(column));
-    let scalar = |column: &'static ExportColumn| {
-        let head = &column.column.head;
-        let title = TITLES.iter().find(|(name, _)| *name == head.name).map(|(_, title)| *title);
-        let meaning = head.meaning.split([',', ';']).next().unwrap_or_default();
-        Scalar { name: &head.name, meaning: title.unwrap_or(meaning), column }
-    };
-    numbers.map(scalar).collect()
-});
-
-/// A scalar that the program itself names.
-fn known(name: &str) -> &'static Scalar {
-    Scalar::find(name).expect("the export has this column")
-}
+pub static SCALARS: LazyLock<Vec<Scalar>> = LazyLock::new(|| fixed().filter_map(Scalar::new).collect());
 
 impl PartialEq for Scalar {
     fn eq(&self, other: &Self) -> bool {
@@ -89,6 +36,23 @@ impl PartialEq for Scalar {
 impl Eq for Scalar {}
 
 impl Scalar {
+    /// The number of a column; none if it is no number of a run.
+    const fn new(column: &'static ExportColumn) -> Option<Self> {
+        let (Cow::Borrowed(name), Cow::Borrowed(meaning)) =
+            (&column.column.head.name, &column.column.head.meaning)
+        else {
+            return None;
+        };
+        let Some(shown) = &column.shown else { return None };
+        let meaning = if shown.title.is_empty() { beginning(meaning) } else { shown.title };
+        Some(Self { name, meaning, column, shown })
+    }
+
+    /// A number that the program itself names. One that does not exist is an error of the compiler, in a `static`.
+    pub(super) const fn of(name: &str) -> Self {
+        Self::new(column(name)).expect("a number of a run")
+    }
+
     /// The scalar of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
         SCALARS.iter().find(|scalar| scalar.name == name)
@@ -102,43 +66,59 @@ impl Scalar {
 
     /// The unit; empty without one.
     pub fn unit(&self) -> &'static str {
-        name_and_unit(self.name).1
+        &self.column.column.head.unit
     }
 
-    /// A short name with the unit, for a table with several quantities.
+    /// Its symbol; empty without one.
+    pub(super) fn symbol(&self) -> &'static str {
+        self.shown.symbol
+    }
+
+    /// Whether values may have both signs, and a change of the sign matters more than their sizes.
+    pub(super) fn is_signed(&self) -> bool {
+        self.shown.is_signed
+    }
+
+    /// How many digits a reader sees.
+    pub(super) fn digits(&self) -> Digits {
+        self.shown.digits
+    }
+
+    /// A short name with the unit, for a table with several quantities: the symbol, if there is no unit that it would not say.
     pub(super) fn short_title(&self) -> String {
-        if self == *MU_STAR { "μ*".to_owned() } else { self.title() }
+        let is_enough = !self.symbol().is_empty() && self.unit().is_empty();
+        if is_enough { self.symbol().to_owned() } else { self.title() }
     }
 
     /// An error for a reader. One that is too small to be seen beside the value is no zero.
     pub(super) fn error_text(&self, error: f64) -> String {
-        let text = self.text(error);
-        match self.name {
-            "mu_star" if error > 0.0 && text == "0.0000" => "<0.0001".to_owned(),
-            "frequency_hz" if error > 0.0 && text == "0" => "<1".to_owned(),
-            _ => text,
+        match self.digits().last {
+            Last::Place(place) if error > 0.0 && self.text(error) == self.text(0.0) => {
+                format!("<{}", self.text(10_f64.powi(place)))
+            }
+            _ => self.text(error),
         }
     }
 
     /// A value with its error, if that is known: the error has two digits, and the value the same decimals, but never more than without it,
     /// because a small statistical error says nothing of that of the mesh.
     pub(super) fn text_with_error(&self, x: f64, error: Option<f64>) -> String {
-        match error {
-            Some(error) if self == *MU_STAR && (1e-3..1.0).contains(&error) => {
-                let decimals = (1.0 - error.log10().floor()) as usize;
+        let Some(error) = error else { return self.text(x) };
+        let place = (error.log10().floor() as i32).saturating_sub(1);
+        match self.digits().last {
+            Last::Place(finest) if error < 1.0 && place >= finest => {
+                let decimals = place.unsigned_abs() as usize;
                 format!("{} ± {}", value::fixed(x, decimals), value::fixed(error, decimals))
             }
-            Some(error) => format!("{} ± {}", self.text(x), self.error_text(error)),
-            None => self.text(x),
+            _ => format!("{} ± {}", self.text(x), self.error_text(error)),
         }
     }
 
     /// A value or an error for a reader, in the unit of the name.
     pub(super) fn text(&self, x: f64) -> String {
-        match self.name {
-            "mu_star" => value::fixed(x, 4),
-            "frequency_hz" => value::fixed(x, 0),
-            _ => value::significant(x, 4),
+        match self.digits().last {
+            Last::Place(place) => value::fixed(x, place.unsigned_abs() as usize),
+            Last::Significant(digits) => value::significant(x, digits),
         }
     }
 
@@ -148,20 +128,38 @@ impl Scalar {
         value.filter(|x| x.is_finite())
     }
 
-    /// The error of the value, if it is known: the standard error of a simulated μ\*, and what a file of measured points
+    /// The error of the value, if it is known: the statistical error of a simulated value, and what a file of measured points
     /// gives.
     pub(super) fn error(&self, row: &JobRow) -> Option<f64> {
         let error = match &row.state {
-            RowState::Done(record) => (self == *MU_STAR).then_some(record.mu_star_se),
+            RowState::Done(_) => {
+                let own = SCALARS.iter().find(|own| own.shown.error_of == self.name);
+                own.and_then(|own| own.value(row))
+            }
             RowState::Measured(measured) => measured.value(self.name).and_then(|found| found.error),
             _ => None,
         };
         error.filter(|x| x.is_finite()).map(f64::abs)
     }
 
+    /// The error of the value by mesh, time step and detection, if it was measured.
+    pub(super) fn mesh_error(&self, row: &JobRow) -> Option<f64> {
+        let error = row.discretisation.error()?;
+        self.shown.mesh_error.map(|relative| relative(error))
+    }
+
     /// Whether the value in a row counts for the range of an axis or of colours. The frequency of a run that is not
     /// periodic is no frequency of a limit cycle.
     pub(super) fn is_settled(&self, row: &JobRow) -> bool {
-        self != *FREQUENCY || row.record().is_none_or(|record| record.outcome != Outcome::NotPeriodic)
+        self != FREQUENCY || row.record().is_none_or(|record| record.outcome != Outcome::NotPeriodic)
     }
+}
+
+/// A meaning up to its first comma or semicolon.
+const fn beginning(meaning: &'static str) -> &'static str {
+    let mut end = 0;
+    while end < meaning.len() && !matches!(meaning.as_bytes()[end], b',' | b';') {
+        end += 1;
+    }
+    meaning.split_at(end).0
 }

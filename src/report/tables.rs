@@ -36,8 +36,8 @@ impl Quantity {
     /// The quantity with its symbol and unit.
     pub fn title(self) -> Cow<'static, str> {
         match self {
-            Self::MuStar => "macroscopic friction coefficient μ*".into(),
-            Self::Frequency => "frequency [Hz]".into(),
+            Self::MuStar => MU_STAR.title().into(),
+            Self::Frequency => FREQUENCY.title().into(),
             Self::Regime => "contact regime".into(),
             Self::Of(scalar) => scalar.title().into(),
         }
@@ -46,7 +46,7 @@ impl Quantity {
     /// The name of its files without the ending.
     pub(super) fn stem(self) -> &'static str {
         match self {
-            Self::MuStar => "mu_star",
+            Self::MuStar => MU_STAR.name,
             Self::Frequency => "frequency",
             Self::Regime => "regime",
             Self::Of(scalar) => scalar.name,
@@ -85,11 +85,11 @@ impl Quantity {
     fn result(self, row: &JobRow, record: &JobRecord, digits: Digits) -> String {
         let text = match self {
             Self::MuStar if !record.mu_star.is_finite() => return MISSING.to_owned(),
-            Self::MuStar if digits == Digits::Fixed => value::fixed(record.mu_star, 4),
-            Self::MuStar => digits::mu_star(row, record),
+            Self::MuStar if digits == Digits::Fixed => MU_STAR.text(record.mu_star),
+            Self::MuStar => digits::by_error(MU_STAR, row),
             Self::Frequency => match record.frequency_hz.filter(|f| f.is_finite()) {
-                Some(frequency) if digits == Digits::Fixed => format!("{frequency:.0}"),
-                Some(_) => digits::frequency_hz(row, record).unwrap_or_default(),
+                Some(frequency) if digits == Digits::Fixed => FREQUENCY.text(frequency),
+                Some(_) => digits::by_error(FREQUENCY, row),
                 None if record.regime == Regime::Stable => "stable".to_owned(),
                 None if record.outcome == Outcome::Unstable => "growing".to_owned(),
                 None => "none".to_owned(),
@@ -106,8 +106,8 @@ impl Quantity {
 
     fn measured(self, row: &JobRow) -> String {
         let scalar = match self {
-            Self::MuStar => *MU_STAR,
-            Self::Frequency => *FREQUENCY,
+            Self::MuStar => MU_STAR,
+            Self::Frequency => FREQUENCY,
             Self::Of(scalar) => scalar,
             Self::Regime => return MISSING.to_owned(),
         };

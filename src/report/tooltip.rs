@@ -3,10 +3,11 @@
 use super::digits;
 use super::layout::parameters_in_words;
 use super::measurement::MeasuredValue;
-use super::parameters::name_and_unit;
 use super::row::{JobRow, RowState};
+use super::scalar::{FREQUENCY, MU_STAR};
 use crate::analysis::JobRecord;
 use crate::publish::value::{fixed, number, short, significant};
+use crate::units::name_and_unit;
 
 /// Number of characters of a job's key that are shown. They are unique in practice, and `show` accepts them.
 const KEY_LENGTH: usize = 12;
@@ -51,7 +52,7 @@ pub(super) fn short_key(row: &JobRow) -> String {
 fn results(row: &JobRow, record: &JobRecord) -> Vec<String> {
     let percent = |share: f64| fixed(100.0 * share, 1);
     let mut lines = vec![
-        format!("μ* = {}", digits::mu_star_with_error(row, record)),
+        format!("{} = {}", MU_STAR.symbol(), digits::with_error(MU_STAR, row)),
         format!("{}, {}", record.regime.label(), record.outcome.label()),
         format!(
             "stick {} %, slip {} %, separated {} %",
@@ -60,8 +61,8 @@ fn results(row: &JobRow, record: &JobRecord) -> Vec<String> {
             percent(record.separated_share)
         ),
     ];
-    if let Some(frequency) = digits::frequency_hz(row, record) {
-        lines.insert(1, format!("{frequency} Hz"));
+    if record.frequency_hz.is_some() {
+        lines.insert(1, format!("{} {}", digits::by_error(FREQUENCY, row), FREQUENCY.unit()));
     }
     lines.push(errors(row, record));
     lines.push(format!(

@@ -30,20 +30,30 @@ pub struct Limit {
     expected: &'static str,
 }
 
+impl End {
+    /// Whether a value is above this lower end, or is the end where that is allowed.
+    pub fn is_below(self, value: f64) -> bool {
+        match self {
+            Self::Open => true,
+            Self::At(low) => value >= low,
+            Self::Beyond(low) => value > low,
+        }
+    }
+
+    /// Whether a value is below this upper end, or is the end where that is allowed.
+    pub fn is_above(self, value: f64) -> bool {
+        match self {
+            Self::Open => true,
+            Self::At(high) => value <= high,
+            Self::Beyond(high) => value < high,
+        }
+    }
+}
+
 impl Limit {
     /// Whether a finite value is within the limit.
     pub fn holds(&self, value: f64) -> bool {
-        let above = match self.low {
-            End::Open => true,
-            End::At(low) => value >= low,
-            End::Beyond(low) => value > low,
-        };
-        let below = match self.high {
-            End::Open => true,
-            End::At(high) => value <= high,
-            End::Beyond(high) => value < high,
-        };
-        value.is_finite() && above && below
+        value.is_finite() && self.low.is_below(value) && self.high.is_above(value)
     }
 
     /// What would be right instead of `value`.

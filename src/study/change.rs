@@ -104,8 +104,7 @@ impl Outline {
         }
         for setting in &accepted {
             self.source.changes.push(Change::of_parameter(setting.parameter, &setting.place, &setting.text));
-            let displaced = setting.parameter.displaces().iter();
-            displaced.filter_map(|name| Parameter::find(name)).for_each(|other| self.forget(other));
+            setting.parameter.displaces().for_each(|other| self.forget(other));
         }
         for setting in &accepted {
             problems.extend(self.apply(setting, forms, &template));

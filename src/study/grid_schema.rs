@@ -78,7 +78,7 @@ fn of_parameters(
         let value = of(parameter, schemas);
         let is_described = value.get("description").is_some();
         let value =
-            if is_described { value } else { json!({ "description": parameter.doc, "anyOf": [value] }) };
+            if is_described { value } else { json!({ "description": parameter.doc(), "anyOf": [value] }) };
         (parameter.name.to_owned(), value)
     };
     let properties: Map<String, Value> = PARAMETERS.iter().map(property).collect();
@@ -139,5 +139,5 @@ fn forms_of_values(parameter: &Parameter, list: Value, schemas: &mut SchemaGener
         }
         Kind::Counts | Kind::Flag | Kind::Name(_) => vec![list],
     };
-    json!({ "description": parameter.doc, "anyOf": forms })
+    json!({ "description": parameter.doc(), "anyOf": forms })
 }

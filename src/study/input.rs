@@ -23,6 +23,11 @@ pub fn input_parameters() -> impl Iterator<Item = &'static Parameter> {
 
 /// All inputs of a job that have an effect, the defaults among them, each once: the mesh and the size by their components.
 pub fn inputs(spec: &JobSpec) -> Vec<Input> {
+    values_of(spec, input_parameters())
+}
+
+/// Of these parameters those that the job has and that have an effect, with their values.
+pub(super) fn values_of(spec: &JobSpec, parameters: impl Iterator<Item = &'static Parameter>) -> Vec<Input> {
     let unused = without_effect(spec);
     let mut spec = spec.clone();
     spec.scene.contact = spec.scene.contact.in_use();
@@ -35,5 +40,5 @@ pub fn inputs(spec: &JobSpec) -> Vec<Input> {
         let value = at(&job, parameter.pointer).filter(|_| has_effect)?.clone();
         Some(Input { parameter, value })
     };
-    input_parameters().filter_map(input).collect()
+    parameters.filter_map(input).collect()
 }

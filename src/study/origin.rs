@@ -31,8 +31,8 @@ impl Origin {
 
 /// Whether presets set a parameter, or the whole field of which it sets a part.
 pub fn is_set_by_presets(parameter: &Parameter) -> bool {
-    let covered = Preset::COVERS.iter().chain(Preset::CHOOSES).filter_map(|name| Parameter::find(name));
-    covered.into_iter().any(|own| own.sets(&parameter.field()))
+    let mut covered = Preset::COVERS.iter().chain(Preset::CHOOSES).map(|name| Parameter::named(name));
+    covered.any(|own| own.sets(&parameter.field()))
 }
 
 impl Study {

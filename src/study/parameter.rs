@@ -2,12 +2,14 @@
 
 use super::error::Problem;
 use super::json::number_hint;
+use super::plausible::{DENSITY, FRICTION, LENGTH, MODULUS, Plausible};
 use super::preset::Preset;
 use super::suggest;
 use crate::spec::{
     ClampSide, DiskKind, DiskTimeStep, FrictionLaw, Precision, Shape, StabilityMethod, Start, TargetSurface,
     TopFace,
 };
+use crate::units::name_and_unit;
 use schemars::{Schema, SchemaGenerator};
 use serde_json::{Map, Value};
 
@@ -35,13 +37,25 @@ pub struct Parameter {
     /// JSON pointer into a study, and so into a [`JobSpec`](crate::spec::JobSpec): a job has every field that a parameter
     /// sets, except for `preset` and `damping`, which stand for values of other fields.
     pub pointer: &'static str,
-    /// Description, with the unit in brackets.
-    pub doc: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+    /// The unit at the end of its name; empty for numbers without a unit, names and flags.
+    pub unit: &'static str,
+    /// Its symbol, whose part behind a `_` is a subscript; empty without one.
+    pub symbol: &'static str,
+    /// Values outside are taken for those of another unit.
+    pub(super) plausible: Option<&'static Plausible>,
     pub(super) kind: Kind,
 }
 
-const fn parameter(name: &'static str, pointer: &'static str, kind: Kind, doc: &'static str) -> Parameter {
-    Parameter { name, pointer, doc, kind }
+const fn parameter(
+    name: &'static str,
+    pointer: &'static str,
+    kind: Kind,
+    meaning: &'static str,
+) -> Parameter {
+    let unit = name_and_unit(name).1;
+    Parameter { name, pointer, meaning, unit, symbol: "", plausible: None, kind }
 }
 
 const CLAMP_SIDE: Kind = Kind::Name(SchemaGenerator::subschema_for::<ClampSide>);
@@ -56,99 +70,100 @@ const STABILITY: Kind = Kind::Name(SchemaGenerator::subschema_for::<StabilityMet
 const START: Kind = Kind::Name(SchemaGenerator::subschema_for::<Start>);
 const DISK_TIME_STEP: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskTimeStep>);
 
-/// All parameters, in the order in which help and messages list them.
+/// All parameters, in the order in which help and messages list them. What a field of a job is called, which unit and symbol it has, and which
+/// values are plausible, is said here and nowhere else; `spec` has its type and its physical limits.
 #[rustfmt::skip]
 pub static PARAMETERS: &[Parameter] = &[
-    parameter("omega_rpm", "/scene/disk/omega_rpm", Kind::Number, "rotation speed of the disk [rpm]"),
-    parameter("mu", "/scene/contact/mu", Kind::Number, "local (Coulomb) friction coefficient [-]"),
-    parameter("load_n", "/scene/load/force_n", Kind::Number, "total normal load [N]"),
-    parameter("friction_law", "/scene/contact/law", FRICTION_LAW, "friction law [name]"),
-    parameter("mu_static", "/scene/contact/mu_static", Kind::Number, "friction coefficient without slip [-]"),
-    parameter("friction_speed_m_s", "/scene/contact/speed_m_s", Kind::Number, "slip speed that scales a friction law [m/s]"),
-    parameter("friction_slope_s_m", "/scene/contact/slope_s_m", Kind::Number, "rise of the friction coefficient with the slip speed [s/m]"),
-    parameter("friction_length_m", "/scene/contact/length_m", Kind::Number, "slip in which friction follows the normal force [m]"),
-    parameter("contact_stiffness_pa_m", "/scene/contact/stiffness_pa_m", Kind::Number, "stiffness of a layer between pin and disk [Pa/m]"),
-    parameter("contact_stiffness_exponent", "/scene/contact/stiffness_exponent", Kind::Number, "exponent of the layer's pressure over its depth [-]"),
-    parameter("contact_stiffness_pressure_pa", "/scene/contact/stiffness_pressure_pa", Kind::Number, "pressure at which the layer has the stiffness contact_stiffness_pa_m [Pa]"),
-    parameter("ramp_s", "/scene/load/ramp_s", Kind::Number, "duration of the load's linear ramp [s]"),
-    parameter("track_radius_m", "/scene/disk/track_radius_m", Kind::Number, "distance of the pin's centre from the axis [m]"),
-    parameter("runout_m", "/scene/disk/runout_m", Kind::Number, "amplitude of the disk's axial run-out [m]"),
-    parameter("waviness_height_m", "/scene/disk/waviness_height_m", Kind::Number, "amplitude of the disk's waviness [m]"),
-    parameter("waviness_count", "/scene/disk/waviness_count", Kind::Count, "waves of the disk in a revolution [-]"),
-    parameter("disk_kind", "/scene/disk/kind", DISK_KIND, "what the disk is made of [name]"),
-    parameter("disk_young_modulus_pa", "/scene/disk/ring/young_modulus_pa", Kind::Number, "Young's modulus of an elastic disk [Pa]"),
-    parameter("disk_poisson_ratio", "/scene/disk/ring/poisson_ratio", Kind::Number, "Poisson's ratio of an elastic disk [-]"),
-    parameter("disk_density_kg_m3", "/scene/disk/ring/density_kg_m3", Kind::Number, "density of an elastic disk [kg/m³]"),
-    parameter("disk_inner_radius_m", "/scene/disk/ring/inner_radius_m", Kind::Number, "inner radius of an elastic disk [m]"),
-    parameter("disk_outer_radius_m", "/scene/disk/ring/outer_radius_m", Kind::Number, "outer radius of an elastic disk [m]"),
-    parameter("disk_thickness_m", "/scene/disk/ring/thickness_m", Kind::Number, "thickness of an elastic disk [m]"),
-    parameter("disk_element_size_m", "/scene/disk/ring/element_size_m", Kind::Number, "largest element of an elastic disk under the track [m]"),
-    parameter("disk_coarse_element_size_m", "/scene/disk/ring/coarse_element_size_m", Kind::Number, "largest element of an elastic disk elsewhere [m]"),
-    parameter("track_arc_deg", "/scene/disk/ring/track_arc_deg", Kind::Number, "arc of an elastic disk that the pin may sweep [°]"),
-    parameter("target", "/scene/disk/ring/target", TARGET, "how an elastic disk's surface is interpolated [name]"),
-    parameter("disk_clock", "/scene/disk/ring/clock", DISK_TIME_STEP, "whether an elastic disk has its own time step [name]"),
-    parameter("young_modulus_pa", "/scene/pin/young_modulus_pa", Kind::Number, "Young's modulus of the pin [Pa]"),
-    parameter("poisson_ratio", "/scene/pin/poisson_ratio", Kind::Number, "Poisson's ratio of the pin [-]"),
-    parameter("density_kg_m3", "/scene/pin/density_kg_m3", Kind::Number, "density of the pin [kg/m³]"),
-    parameter("elements", "/scene/pin/elements", Kind::Counts, "elements in x, y and z, as [nx, ny, nz] [-]"),
-    parameter("nx", "/scene/pin/elements/0", Kind::Count, "elements in x, the radial direction [-]"),
-    parameter("ny", "/scene/pin/elements/1", Kind::Count, "elements in y, the sliding direction [-]"),
-    parameter("nz", "/scene/pin/elements/2", Kind::Count, "elements in z [-]"),
-    parameter("pin_shape", "/scene/pin/shape", PIN_SHAPE, "shape of the pin [name]"),
-    parameter("diameter_m", "/scene/pin/diameter_m", Kind::Number, "diameter of a cylindrical pin [m]"),
-    parameter("tilt_x_deg", "/scene/pin/tilt_x_deg", Kind::Number, "tilt of the pin about x, which lifts its trailing end [°]"),
-    parameter("tilt_y_deg", "/scene/pin/tilt_y_deg", Kind::Number, "tilt of the pin about y, which lifts its inner side [°]"),
-    parameter("size_x_m", "/scene/pin/size_m/0", Kind::Number, "edge of the pin in x, the radial direction [m]"),
-    parameter("size_y_m", "/scene/pin/size_m/1", Kind::Number, "edge of the pin in y, the sliding direction [m]"),
-    parameter("size_z_m", "/scene/pin/size_m/2", Kind::Number, "edge of the pin in z [m]"),
-    parameter("crown_radius_m", "/scene/pin/base/crown_radius_m", Kind::Number, "radius of a crowned base [m]"),
-    parameter("edge_radius_m", "/scene/pin/base/edge_radius_m", Kind::Number, "radius of rounded edges of the base [m]"),
-    parameter("chamfer_width_m", "/scene/pin/base/chamfer_width_m", Kind::Number, "width of a chamfer of the base [m]"),
-    parameter("chamfer_height_m", "/scene/pin/base/chamfer_height_m", Kind::Number, "height of the chamfer of the base [m]"),
-    parameter("wave_height_m", "/scene/pin/base/wave_height_m", Kind::Number, "amplitude of a wave on the base [m]"),
-    parameter("wave_length_m", "/scene/pin/base/wave_length_m", Kind::Number, "wavelength of the wave on the base [m]"),
-    parameter("wave_direction_deg", "/scene/pin/base/wave_direction_deg", Kind::Number, "direction of the wave on the base, from +x towards +y [°]"),
-    parameter("roughness_rms_m", "/scene/pin/base/roughness/rms_m", Kind::Number, "root mean square of a rough base's height [m]"),
-    parameter("roughness_seed", "/scene/pin/base/roughness/seed", Kind::Count, "number of a rough base among those of its spectrum [-]"),
-    parameter("roughness_hurst", "/scene/pin/base/roughness/hurst", Kind::Number, "Hurst exponent of a rough base [-]"),
-    parameter("roughness_longest_m", "/scene/pin/base/roughness/longest_m", Kind::Number, "longest wavelength of a rough base [m]"),
-    parameter("roughness_shortest_m", "/scene/pin/base/roughness/shortest_m", Kind::Number, "shortest wavelength of a rough base [m]"),
-    parameter("clamp_side", "/scene/clamp/side", CLAMP_SIDE, "where on the top face the clamp is [name]"),
-    parameter("clamp_width_m", "/scene/clamp/width_m", Kind::Number, "width of the clamp's strip [m]"),
-    parameter("top", "/scene/top", TOP_FACE, "how the top face moves in z [name]"),
-    parameter("holder_mass_kg", "/scene/holder/mass_kg", Kind::Number, "mass of the holder [kg]"),
-    parameter("holder_stiffness_x_n_m", "/scene/holder/stiffness_x_n_m", Kind::Number, "stiffness of the holder in x [N/m]"),
-    parameter("holder_stiffness_y_n_m", "/scene/holder/stiffness_y_n_m", Kind::Number, "stiffness of the holder in y, the sliding direction [N/m]"),
-    parameter("holder_stiffness_z_n_m", "/scene/holder/stiffness_z_n_m", Kind::Number, "0 for a holder whose mass moves with the load in z [N/m]"),
-    parameter("holder_damping_x_n_s_m", "/scene/holder/damping_x_n_s_m", Kind::Number, "damper of the holder in x [N s/m]"),
-    parameter("holder_damping_y_n_s_m", "/scene/holder/damping_y_n_s_m", Kind::Number, "damper of the holder in y, the sliding direction [N s/m]"),
-    parameter("holder_damping_z_n_s_m", "/scene/holder/damping_z_n_s_m", Kind::Number, "damper of the holder in z [N s/m]"),
-    parameter("holder_rotational_stiffness_x_nm_rad", "/scene/holder/rotational_stiffness_x_nm_rad", Kind::Number, "rotational stiffness of the holder about x [N m/rad]"),
-    parameter("holder_rotational_stiffness_y_nm_rad", "/scene/holder/rotational_stiffness_y_nm_rad", Kind::Number, "rotational stiffness of the holder about y [N m/rad]"),
-    parameter("holder_rotational_damping_x_nm_s_rad", "/scene/holder/rotational_damping_x_nm_s_rad", Kind::Number, "rotational damper of the holder about x [N m s/rad]"),
-    parameter("holder_rotational_damping_y_nm_s_rad", "/scene/holder/rotational_damping_y_nm_s_rad", Kind::Number, "rotational damper of the holder about y [N m s/rad]"),
-    parameter("holder_inertia_x_kg_m2", "/scene/holder/inertia_x_kg_m2", Kind::Number, "moment of inertia of the holder about x [kg m²]"),
-    parameter("holder_inertia_y_kg_m2", "/scene/holder/inertia_y_kg_m2", Kind::Number, "moment of inertia of the holder about y [kg m²]"),
-    parameter("preset", "/preset", PRESET, "accuracy of mesh, time step and detection [name]"),
-    parameter("beta2", "/numerics/beta2", Kind::Number, "β₂ of the time scheme, 0.5 to 1 [-]"),
-    parameter("beta_r_s", "/numerics/beta_r_s", Kind::Number, "stiffness-proportional damping β_R [s]"),
-    parameter("damping_ratio", "/damping/ratio", Kind::Number, "damping ratio ζ at damping_frequency_hz, instead of beta_r_s [-]"),
-    parameter("loss_factor", "/damping/loss_factor", Kind::Number, "loss factor η = 2ζ at damping_frequency_hz, instead of beta_r_s [-]"),
-    parameter("damping_frequency_hz", "/damping/frequency_hz", Kind::Number, "frequency at which damping_ratio or loss_factor holds [Hz]"),
-    parameter("safety_factor", "/numerics/safety_factor", Kind::Number, "time step as a fraction of the stability limit [-]"),
-    parameter("time_step_s", "/numerics/time_step_s", Kind::Number, "time step, instead of safety_factor [s]"),
-    parameter("precision", "/numerics/precision", PRECISION, "precision of the run's numbers, on a rigid disk [name]"),
-    parameter("limit_s", "/run/limit_s", Kind::Number, "simulated time after which a run ends [s]"),
-    parameter("stop_early", "/run/stop_early", Kind::Flag, "stop once periodic or decayed [true or false]"),
-    parameter("average_last_fraction", "/run/average_last_fraction", Kind::Number, "last fraction of the run that is averaged [-]"),
-    parameter("start", "/run/start", START, "whether a run starts from rest or from the limit cycle of a coarser mesh [name]"),
-    parameter("window_s", "/run/window_s", Kind::Number, "length of the windows of a run whose speed or load changes, about [s]"),
-    parameter("cycles", "/detection/cycles", Kind::Count, "consecutive limit cycles that must repeat [-]"),
-    parameter("tolerance", "/detection/tolerance", Kind::Number, "largest spread of a per-cycle figure over them [-]"),
-    parameter("drift_tolerance", "/detection/drift_tolerance", Kind::Number, "largest drift of its mean between their halves [-]"),
-    parameter("regime_threshold", "/detection/regime_threshold", Kind::Number, "share above which a contact state names the regime [-]"),
-    parameter("decay_observation_s", "/detection/decay_observation_s", Kind::Number, "shortest steady sliding in which a decay is measured [s]"),
-    parameter("stability", "/stability", STABILITY, "whether eigenvalues or the run decide that sliding is stable [name]"),
+    parameter("omega_rpm", "/scene/disk/omega_rpm", Kind::Number, "rotation speed of the disk").symbol("ω"),
+    parameter("mu", "/scene/contact/mu", Kind::Number, "local (Coulomb) friction coefficient").symbol("μ").plausible(&FRICTION),
+    parameter("load_n", "/scene/load/force_n", Kind::Number, "total normal load").symbol("F"),
+    parameter("friction_law", "/scene/contact/law", FRICTION_LAW, "friction law"),
+    parameter("mu_static", "/scene/contact/mu_static", Kind::Number, "friction coefficient without slip"),
+    parameter("friction_speed_m_s", "/scene/contact/speed_m_s", Kind::Number, "slip speed that scales a friction law"),
+    parameter("friction_slope_s_m", "/scene/contact/slope_s_m", Kind::Number, "rise of the friction coefficient with the slip speed"),
+    parameter("friction_length_m", "/scene/contact/length_m", Kind::Number, "slip in which friction follows the normal force"),
+    parameter("contact_stiffness_pa_m", "/scene/contact/stiffness_pa_m", Kind::Number, "stiffness of a layer between pin and disk"),
+    parameter("contact_stiffness_exponent", "/scene/contact/stiffness_exponent", Kind::Number, "exponent of the layer's pressure over its depth"),
+    parameter("contact_stiffness_pressure_pa", "/scene/contact/stiffness_pressure_pa", Kind::Number, "pressure at which the layer has the stiffness contact_stiffness_pa_m"),
+    parameter("ramp_s", "/scene/load/ramp_s", Kind::Number, "duration of the load's linear ramp").symbol("t_F"),
+    parameter("track_radius_m", "/scene/disk/track_radius_m", Kind::Number, "distance of the pin's centre from the axis").symbol("R").plausible(&LENGTH),
+    parameter("runout_m", "/scene/disk/runout_m", Kind::Number, "amplitude of the disk's axial run-out"),
+    parameter("waviness_height_m", "/scene/disk/waviness_height_m", Kind::Number, "amplitude of the disk's waviness"),
+    parameter("waviness_count", "/scene/disk/waviness_count", Kind::Count, "waves of the disk in a revolution"),
+    parameter("disk_kind", "/scene/disk/kind", DISK_KIND, "what the disk is made of"),
+    parameter("disk_young_modulus_pa", "/scene/disk/ring/young_modulus_pa", Kind::Number, "Young's modulus of an elastic disk").symbol("E_d").plausible(&MODULUS),
+    parameter("disk_poisson_ratio", "/scene/disk/ring/poisson_ratio", Kind::Number, "Poisson's ratio of an elastic disk").symbol("ν_d"),
+    parameter("disk_density_kg_m3", "/scene/disk/ring/density_kg_m3", Kind::Number, "density of an elastic disk").symbol("ρ_d").plausible(&DENSITY),
+    parameter("disk_inner_radius_m", "/scene/disk/ring/inner_radius_m", Kind::Number, "inner radius of an elastic disk").symbol("r_i").plausible(&LENGTH),
+    parameter("disk_outer_radius_m", "/scene/disk/ring/outer_radius_m", Kind::Number, "outer radius of an elastic disk").symbol("r_o").plausible(&LENGTH),
+    parameter("disk_thickness_m", "/scene/disk/ring/thickness_m", Kind::Number, "thickness of an elastic disk").symbol("h_d").plausible(&LENGTH),
+    parameter("disk_element_size_m", "/scene/disk/ring/element_size_m", Kind::Number, "largest element of an elastic disk under the track"),
+    parameter("disk_coarse_element_size_m", "/scene/disk/ring/coarse_element_size_m", Kind::Number, "largest element of an elastic disk elsewhere"),
+    parameter("track_arc_deg", "/scene/disk/ring/track_arc_deg", Kind::Number, "arc of an elastic disk that the pin may sweep"),
+    parameter("target", "/scene/disk/ring/target", TARGET, "how an elastic disk's surface is interpolated"),
+    parameter("disk_clock", "/scene/disk/ring/clock", DISK_TIME_STEP, "whether an elastic disk has its own time step"),
+    parameter("young_modulus_pa", "/scene/pin/young_modulus_pa", Kind::Number, "Young's modulus of the pin").symbol("E").plausible(&MODULUS),
+    parameter("poisson_ratio", "/scene/pin/poisson_ratio", Kind::Number, "Poisson's ratio of the pin").symbol("ν"),
+    parameter("density_kg_m3", "/scene/pin/density_kg_m3", Kind::Number, "density of the pin").symbol("ρ").plausible(&DENSITY),
+    parameter("elements", "/scene/pin/elements", Kind::Counts, "elements in x, y and z, as [nx, ny, nz]"),
+    parameter("nx", "/scene/pin/elements/0", Kind::Count, "elements in x, the radial direction").symbol("n_x"),
+    parameter("ny", "/scene/pin/elements/1", Kind::Count, "elements in y, the sliding direction").symbol("n_y"),
+    parameter("nz", "/scene/pin/elements/2", Kind::Count, "elements in z").symbol("n_z"),
+    parameter("pin_shape", "/scene/pin/shape", PIN_SHAPE, "shape of the pin"),
+    parameter("diameter_m", "/scene/pin/diameter_m", Kind::Number, "diameter of a cylindrical pin").symbol("d").plausible(&LENGTH),
+    parameter("tilt_x_deg", "/scene/pin/tilt_x_deg", Kind::Number, "tilt of the pin about x, which lifts its trailing end"),
+    parameter("tilt_y_deg", "/scene/pin/tilt_y_deg", Kind::Number, "tilt of the pin about y, which lifts its inner side"),
+    parameter("size_x_m", "/scene/pin/size_m/0", Kind::Number, "edge of the pin in x, the radial direction").symbol("l_x").plausible(&LENGTH),
+    parameter("size_y_m", "/scene/pin/size_m/1", Kind::Number, "edge of the pin in y, the sliding direction").symbol("l_y").plausible(&LENGTH),
+    parameter("size_z_m", "/scene/pin/size_m/2", Kind::Number, "edge of the pin in z").symbol("h").plausible(&LENGTH),
+    parameter("crown_radius_m", "/scene/pin/base/crown_radius_m", Kind::Number, "radius of a crowned base"),
+    parameter("edge_radius_m", "/scene/pin/base/edge_radius_m", Kind::Number, "radius of rounded edges of the base"),
+    parameter("chamfer_width_m", "/scene/pin/base/chamfer_width_m", Kind::Number, "width of a chamfer of the base"),
+    parameter("chamfer_height_m", "/scene/pin/base/chamfer_height_m", Kind::Number, "height of the chamfer of the base"),
+    parameter("wave_height_m", "/scene/pin/base/wave_height_m", Kind::Number, "amplitude of a wave on the base"),
+    parameter("wave_length_m", "/scene/pin/base/wave_length_m", Kind::Number, "wavelength of the wave on the base"),
+    parameter("wave_direction_deg", "/scene/pin/base/wave_direction_deg", Kind::Number, "direction of the wave on the base, from +x towards +y"),
+    parameter("roughness_rms_m", "/scene/pin/base/roughness/rms_m", Kind::Number, "root mean square of a rough base's height"),
+    parameter("roughness_seed", "/scene/pin/base/roughness/seed", Kind::Count, "number of a rough base among those of its spectrum"),
+    parameter("roughness_hurst", "/scene/pin/base/roughness/hurst", Kind::Number, "Hurst exponent of a rough base"),
+    parameter("roughness_longest_m", "/scene/pin/base/roughness/longest_m", Kind::Number, "longest wavelength of a rough base"),
+    parameter("roughness_shortest_m", "/scene/pin/base/roughness/shortest_m", Kind::Number, "shortest wavelength of a rough base"),
+    parameter("clamp_side", "/scene/clamp/side", CLAMP_SIDE, "where on the top face the clamp is"),
+    parameter("clamp_width_m", "/scene/clamp/width_m", Kind::Number, "width of the clamp's strip").symbol("w").plausible(&LENGTH),
+    parameter("top", "/scene/top", TOP_FACE, "how the top face moves in z"),
+    parameter("holder_mass_kg", "/scene/holder/mass_kg", Kind::Number, "mass of the holder"),
+    parameter("holder_stiffness_x_n_m", "/scene/holder/stiffness_x_n_m", Kind::Number, "stiffness of the holder in x"),
+    parameter("holder_stiffness_y_n_m", "/scene/holder/stiffness_y_n_m", Kind::Number, "stiffness of the holder in y, the sliding direction"),
+    parameter("holder_stiffness_z_n_m", "/scene/holder/stiffness_z_n_m", Kind::Number, "0 for a holder whose mass moves with the load in z"),
+    parameter("holder_damping_x_n_s_m", "/scene/holder/damping_x_n_s_m", Kind::Number, "damper of the holder in x"),
+    parameter("holder_damping_y_n_s_m", "/scene/holder/damping_y_n_s_m", Kind::Number, "damper of the holder in y, the sliding direction"),
+    parameter("holder_damping_z_n_s_m", "/scene/holder/damping_z_n_s_m", Kind::Number, "damper of the holder in z"),
+    parameter("holder_rotational_stiffness_x_nm_rad", "/scene/holder/rotational_stiffness_x_nm_rad", Kind::Number, "rotational stiffness of the holder about x"),
+    parameter("holder_rotational_stiffness_y_nm_rad", "/scene/holder/rotational_stiffness_y_nm_rad", Kind::Number, "rotational stiffness of the holder about y"),
+    parameter("holder_rotational_damping_x_nm_s_rad", "/scene/holder/rotational_damping_x_nm_s_rad", Kind::Number, "rotational damper of the holder about x"),
+    parameter("holder_rotational_damping_y_nm_s_rad", "/scene/holder/rotational_damping_y_nm_s_rad", Kind::Number, "rotational damper of the holder about y"),
+    parameter("holder_inertia_x_kg_m2", "/scene/holder/inertia_x_kg_m2", Kind::Number, "moment of inertia of the holder about x"),
+    parameter("holder_inertia_y_kg_m2", "/scene/holder/inertia_y_kg_m2", Kind::Number, "moment of inertia of the holder about y"),
+    parameter("preset", "/preset", PRESET, "accuracy of mesh, time step and detection"),
+    parameter("beta2", "/numerics/beta2", Kind::Number, "β₂ of the time scheme, 0.5 to 1").symbol("β₂"),
+    parameter("beta_r_s", "/numerics/beta_r_s", Kind::Number, "stiffness-proportional damping β_R").symbol("β_R"),
+    parameter("damping_ratio", "/damping/ratio", Kind::Number, "damping ratio ζ at damping_frequency_hz, instead of beta_r_s"),
+    parameter("loss_factor", "/damping/loss_factor", Kind::Number, "loss factor η = 2ζ at damping_frequency_hz, instead of beta_r_s"),
+    parameter("damping_frequency_hz", "/damping/frequency_hz", Kind::Number, "frequency at which damping_ratio or loss_factor holds"),
+    parameter("safety_factor", "/numerics/safety_factor", Kind::Number, "time step as a fraction of the stability limit"),
+    parameter("time_step_s", "/numerics/time_step_s", Kind::Number, "time step, instead of safety_factor").symbol("Δt"),
+    parameter("precision", "/numerics/precision", PRECISION, "precision of the run's numbers, on a rigid disk"),
+    parameter("limit_s", "/run/limit_s", Kind::Number, "simulated time after which a run ends"),
+    parameter("stop_early", "/run/stop_early", Kind::Flag, "stop once periodic or decayed"),
+    parameter("average_last_fraction", "/run/average_last_fraction", Kind::Number, "last fraction of the run that is averaged"),
+    parameter("start", "/run/start", START, "whether a run starts from rest or from the limit cycle of a coarser mesh"),
+    parameter("window_s", "/run/window_s", Kind::Number, "length of the windows of a run whose speed or load changes, about"),
+    parameter("cycles", "/detection/cycles", Kind::Count, "consecutive limit cycles that must repeat"),
+    parameter("tolerance", "/detection/tolerance", Kind::Number, "largest spread of a per-cycle figure over them"),
+    parameter("drift_tolerance", "/detection/drift_tolerance", Kind::Number, "largest drift of its mean between their halves"),
+    parameter("regime_threshold", "/detection/regime_threshold", Kind::Number, "share above which a contact state names the regime"),
+    parameter("decay_observation_s", "/detection/decay_observation_s", Kind::Number, "shortest steady sliding in which a decay is measured"),
+    parameter("stability", "/stability", STABILITY, "whether eigenvalues or the run decide that sliding is stable"),
 ];
 
 impl Parameter {
@@ -157,15 +172,31 @@ impl Parameter {
         PARAMETERS.iter().find(|parameter| parameter.name == name)
     }
 
-    /// The description without the unit.
-    pub fn description(&self) -> &'static str {
-        self.doc.rsplit_once(" [").map_or(self.doc, |(text, _)| text)
+    /// The parameter that the program itself names so.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn named(name: &str) -> &'static Self {
+        Self::find(name).unwrap_or_else(|| panic!("there is no parameter {name}"))
     }
 
-    /// The unit; none for numbers without a unit, names and flags.
-    pub fn unit(&self) -> Option<&'static str> {
-        let (_, unit) = self.doc.strip_suffix(']')?.rsplit_once(" [")?;
-        Some(unit).filter(|unit| !matches!(*unit, "-" | "name" | "true or false"))
+    const fn symbol(self, symbol: &'static str) -> Self {
+        Self { symbol, ..self }
+    }
+
+    const fn plausible(self, range: &'static Plausible) -> Self {
+        Self { plausible: Some(range), ..self }
+    }
+
+    /// The meaning, with what its values are in brackets: their unit or their kind.
+    pub fn doc(&self) -> String {
+        let values = match self.kind {
+            Kind::Flag => "true or false",
+            Kind::Name(_) => "name",
+            _ if self.unit.is_empty() => "-",
+            _ => self.unit,
+        };
+        format!("{} [{values}]", self.meaning)
     }
 
     /// Whether a value between two of its values is one, too.
@@ -194,6 +225,11 @@ impl Parameter {
         Some(part).filter(|part| matches!(*part, "scene" | "numerics" | "run" | "detection" | "stability"))
     }
 
+    /// Whether it changes how the physical case is solved and not the case: everything but the scene, and the mesh of it.
+    pub fn is_numerics(&self) -> bool {
+        !self.pointer.starts_with("/scene/") || self.pointer.starts_with("/scene/pin/elements")
+    }
+
     /// The name of the column that holds it in data of jobs. It is the parameter's name, except that the numbers of elements
     /// are named like the edges: `elements_x` beside `size_x_m`.
     pub fn column(&self) -> &'static str {
@@ -215,7 +251,7 @@ impl Parameter {
 
     /// A line of help: name and description.
     pub(super) fn help(&self) -> String {
-        format!("`{}`: {}", self.name, self.doc)
+        format!("`{}`: {}", self.name, self.doc())
     }
 
     /// Whether setting the parameter determines the field `path`.
@@ -228,9 +264,9 @@ impl Parameter {
         self.sets(&other.field()) || other.sets(&self.field())
     }
 
-    /// Names of the parameters that say the same in another way, so that setting this one later on sets them aside.
-    pub(super) fn displaces(&self) -> &'static [&'static str] {
-        match self.name {
+    /// The parameters that say the same in another way, so that setting this one later on sets them aside.
+    pub(super) fn displaces(&self) -> impl Iterator<Item = &'static Self> {
+        let names: &[&str] = match self.name {
             "preset" => Preset::COVERS,
             "damping_ratio" => &["loss_factor", "beta_r_s"],
             "loss_factor" => &["damping_ratio", "beta_r_s"],
@@ -238,7 +274,8 @@ impl Parameter {
             "beta_r_s" => &["damping_ratio", "loss_factor", "damping_frequency_hz"],
             "safety_factor" => &["time_step_s"],
             _ => &[],
-        }
+        };
+        names.iter().map(|name| Self::named(name))
     }
 
     /// Whether it sets an entry of a list and not a field.
@@ -291,6 +328,11 @@ fn whole(value: Value) -> Value {
     }
 }
 
+/// Whether a parameter of that name is [one of the numerics](Parameter::is_numerics).
+pub fn is_numerics(name: &str) -> bool {
+    Parameter::find(name).is_some_and(Parameter::is_numerics)
+}
+
 /// Help for a parameter that does not exist.
 pub(super) fn unknown_help(wrong: &str) -> Vec<String> {
     // A parameter is also recognised by the name of its field, which the rest of the file uses.
@@ -308,5 +350,37 @@ impl PartialEq for Parameter {
     fn eq(&self, other: &Self) -> bool {
         // Names are unique.
         self.name == other.name
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spec::Limit;
+
+    /// Protects: no two parameters have the same symbol, and all are found by what names them in the program.
+    #[test]
+    fn symbols_are_unique() {
+        for (number, parameter) in PARAMETERS.iter().enumerate() {
+            let is_other = |other: &Parameter| other.symbol.is_empty() || other.symbol != parameter.symbol;
+            assert!(PARAMETERS[..number].iter().all(is_other), "{}", parameter.symbol);
+            assert!(parameter.displaces().all(|other| other != parameter), "{}", parameter.name);
+        }
+    }
+
+    /// Protects: what is plausible is allowed, and there are allowed values that are not plausible. Otherwise a range would say nothing.
+    #[test]
+    fn ranges_are_within_limits() {
+        let mut found = 0;
+        for parameter in PARAMETERS {
+            let Some(range) = parameter.plausible else { continue };
+            let field = parameter.field();
+            let limit = Limit::of(&field).or_else(|| Limit::of(&format!("{field}[]"))).unwrap();
+            let values = || (-18..=18).map(|power| 10_f64.powi(power));
+            assert!(values().filter(|x| range.doubt(*x).is_none()).all(|x| limit.holds(x)), "{field}");
+            assert!(values().any(|x| range.doubt(x).is_some() && limit.holds(x)), "{field}");
+            found += 1;
+        }
+        assert_eq!(found, 14);
     }
 }

@@ -37,8 +37,7 @@ impl Change {
     /// A value of a parameter, for its field or its axis. The fields of the parameters that it sets aside have their values
     /// from it too.
     pub(super) fn of_parameter(parameter: &Parameter, place: &str, text: &str) -> Self {
-        let displaced = parameter.displaces().iter().filter_map(|name| Parameter::find(name));
-        let mut fields: Vec<String> = displaced.map(Parameter::field).collect();
+        let mut fields: Vec<String> = parameter.displaces().map(Parameter::field).collect();
         fields.extend([parameter.field(), format!("grid.{}", parameter.name)]);
         Self { place: place.to_owned(), fields, text: text.to_owned() }
     }

@@ -58,7 +58,7 @@ impl InputDifference {
     /// Both sides in words: `omega_rpm: 17 values, 2 rpm to 300 rpm → 5 rpm`.
     pub fn in_words(&self) -> String {
         let Self { parameter, a, b } = self;
-        let unit = parameter.unit().unwrap_or_default();
+        let unit = parameter.unit;
         let name = parameter.name;
         let texts = [false, true].map(|is_exact| [a, b].map(|values| values_text(values, unit, is_exact)));
         if let Some([a, b]) = texts.into_iter().find(|[a, b]| a != b) {

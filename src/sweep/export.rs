@@ -80,10 +80,7 @@ pub fn columns(which: ExportColumns, grid: &[String]) -> Vec<ExportColumn> {
 }
 
 fn input_columns() -> Vec<Head> {
-    let head = |parameter: &Parameter| {
-        let unit = parameter.unit().unwrap_or_default().to_owned();
-        Head::new(parameter.column().to_owned(), unit, parameter.description().to_owned())
-    };
+    let head = |parameter: &Parameter| Head::new(parameter.column(), parameter.unit, parameter.meaning);
     input_parameters().map(head).collect()
 }
 

@@ -1,9 +1,11 @@
 //! Files of measured points, for comparison with studies: CSV with a column for each parameter and result.
 
+use crate::report::columns::ExportColumn;
 use crate::report::{
-    Discretisation, JobRow, MeasuredValue, Measurement, RowState, SCALARS, Scalar, name_and_unit,
+    Discretisation, FREQUENCY, JobRow, MeasuredValue, Measurement, RowState, SCALARS, Scalar,
 };
 use crate::study::{PARAMETERS, Parameter, misspelt_name, read_text};
+use crate::units::name_and_unit;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use serde_json::Value;
 use std::collections::HashSet;
@@ -55,9 +57,6 @@ const STATUS: &str = "status";
 
 /// The largest file \[byte\]: some ten million rows.
 const MOST_BYTES: u64 = 1 << 30;
-
-/// The result that only what squeals has.
-const FREQUENCY: &str = "frequency_hz";
 
 /// What a column has.
 enum Column {
@@ -182,6 +181,11 @@ fn error_column(scalar: &Scalar) -> String {
     format!("{stem}_error{}", &scalar.name[stem.len()..])
 }
 
+/// The result whose error an export calls so: `mu_star_se`.
+fn exported_error(name: &str) -> Option<&'static Scalar> {
+    Scalar::find(ExportColumn::find(name)?.error_of()?)
+}
+
 /// All names that a column can have.
 fn known_names() -> Vec<String> {
     let parameters = PARAMETERS.iter().map(|parameter| parameter.name.to_owned());
@@ -209,8 +213,7 @@ fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, Measured
             Column::Squeals
         } else if name == STATUS {
             Column::Status
-        } else if let Some(scalar) = (name == "mu_star_se").then(|| Scalar::find("mu_star")).flatten() {
-            // An export calls the error of μ* so.
+        } else if let Some(scalar) = exported_error(name) {
             Column::Error(scalar)
         } else if let Some(scalar) = Scalar::find(name) {
             Column::Result(scalar)
@@ -282,11 +285,12 @@ fn row(
                 _ => {}
             },
             // Of what does not vibrate, people write 0 Hz.
-            Column::Result(scalar) if scalar.name == FREQUENCY && number()? == 0.0 => {
+            // Only what squeals has a frequency.
+            Column::Result(scalar) if *scalar == FREQUENCY && number()? == 0.0 => {
                 squeals = squeals.or(Some(false));
             }
             Column::Result(scalar) => {
-                if scalar.name == FREQUENCY {
+                if *scalar == FREQUENCY {
                     squeals = squeals.or(Some(true));
                 }
                 values.push(MeasuredValue { name: scalar.name.to_owned(), value: number()?, error: None });

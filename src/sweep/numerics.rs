@@ -41,3 +41,37 @@ fn case_key(spec: &JobSpec, cases: &mut SharedKeys) -> String {
     case.scene.pin.elements = [1, 1, 1];
     cases.key(case)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver;
+    use crate::spec::DiskKind;
+    use crate::study::input_parameters;
+    use serde_json::Value;
+
+    /// Protects: the parameters that are called numerics are those that do not change the physical case.
+    #[test]
+    fn numerics_are_what_does_not_change_the_case() {
+        let mut cases = SharedKeys::new(solver::VERSION);
+        let mut base = JobSpec::default();
+        base.scene.disk.kind = DiskKind::Elastic;
+        let job = serde_json::to_value(&base).unwrap();
+        let mut case_of = |job: Value| case_key(&serde_json::from_value(job).unwrap(), &mut cases);
+        let own = case_of(job.clone());
+        let mut found = [0; 2];
+        for parameter in input_parameters() {
+            let mut changed = job.clone();
+            let Some(value) = changed.pointer_mut(parameter.pointer) else { continue };
+            *value = match value {
+                Value::Bool(flag) => (!*flag).into(),
+                Value::Number(count) if count.is_u64() => (count.as_u64().unwrap() + 1).into(),
+                Value::Number(number) => (number.as_f64().unwrap() * (1.0 + f64::EPSILON)).into(),
+                _ => continue,
+            };
+            assert_eq!(case_of(changed) == own, parameter.is_numerics(), "{}", parameter.name);
+            found[usize::from(parameter.is_numerics())] += 1;
+        }
+        assert!(found[0] > 20 && found[1] > 10, "{found:?}");
+    }
+}

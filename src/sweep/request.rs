@@ -8,7 +8,7 @@ use super::selection::values;
 use crate::publish::value;
 use crate::queue::Queue;
 use crate::report::columns::ExportColumn;
-use crate::report::{JobRow, SCALARS, Scalar, View};
+use crate::report::{FREQUENCY, JobRow, MU_STAR, SCALARS, Scalar, View};
 use crate::solver;
 use crate::spec::JobSpec;
 use crate::study::{DIRECTION, PARAMETERS, Spacing, Study, StudyError, nearest_name};
@@ -148,7 +148,7 @@ impl ReportRequest {
                 if is_parameter { not_a_result("--y", name) } else { no_such_quantity("--y", name) }
             })?;
             // These two have their figures in every report.
-            if !matches!(scalar.name, "mu_star" | "frequency_hz") && !y.contains(&scalar) {
+            if scalar != MU_STAR && scalar != FREQUENCY && !y.contains(&scalar) {
                 y.push(scalar);
             }
         }
@@ -240,7 +240,7 @@ pub(super) fn check_quantities(study: &Study) -> Result<(), SweepError> {
 fn descriptions() -> std::collections::BTreeMap<String, String> {
     let numbers = PARAMETERS.iter().filter(|parameter| parameter.is_number());
     let in_words = numbers.map(|parameter| {
-        let words = parameter.description();
+        let words = parameter.meaning;
         (parameter.name.to_owned(), words.split_once(", ").map_or(words, |(words, _)| words).to_owned())
     });
     in_words.collect()

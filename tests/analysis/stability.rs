@@ -4,7 +4,7 @@ use super::signals::coarse;
 use std::sync::Arc;
 use tribosweep_mechanics::analysis::lanes::{AnyLanes, Lanes, LanesOf};
 use tribosweep_mechanics::analysis::{
-    AboveBand, ComplexMode, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
+    AboveBand, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
 };
 use tribosweep_mechanics::solver::{Model, RunNumber};
 use tribosweep_mechanics::spec::{ClampSide, JobSpec, Precision, Shape, StabilityMethod};
@@ -13,26 +13,6 @@ fn short(method: StabilityMethod) -> JobSpec {
     let mut spec = JobSpec { stability: method, ..coarse() };
     spec.run.limit_s = 0.002;
     spec
-}
-
-fn eigenvalues() -> SlidingStability {
-    let mode = ComplexMode {
-        frequency_hz: 1.5e4,
-        growth_rate_per_s: 120.0,
-        damping_ratio: -1.3e-3,
-        residual: 1e-9,
-        is_converged: true,
-    };
-    SlidingStability {
-        decided: false,
-        contact_nodes: 60,
-        lifted_nodes: 3,
-        mu_star: 0.4,
-        band_hz: 5e4,
-        above_band: AboveBand::NotLookedAt,
-        damped_above_hz: None,
-        modes: vec![mode],
-    }
 }
 
 /// Protects: a job that runs has its eigenvalues in its record, also if it is continued from a checkpoint by a program that
@@ -50,11 +30,11 @@ fn a_checkpoint_carries_the_eigenvalues() {
     };
     let mut lanes = Lanes::<1>::new(Arc::clone(&model));
     lanes.begin(0, 7, spec.clone()).unwrap();
-    lanes.note(0, Noted { stability: eigenvalues(), grows: false });
+    lanes.note(0, Noted { stability: SlidingStability::example(), grows: false });
     lanes.advance(&mut |_| {});
     let checkpoint = lanes.checkpoint(7).unwrap();
     let whole = finish(&mut lanes);
-    assert_eq!(whole.stability, Some(eigenvalues()));
+    assert_eq!(whole.stability, Some(SlidingStability::example()));
     let mut other = Lanes::<1>::new(model);
     other.resume(0, 1, spec.clone(), &checkpoint).unwrap();
     assert_eq!(finish(&mut other), whole);
@@ -86,7 +66,7 @@ fn outcome_with<R: RunNumber>(precision: Precision, grows: bool) -> Outcome {
     let model = Arc::new(Model::from_scene(&spec.scene, &spec.numerics).unwrap());
     let mut lanes = LanesOf::<1, R>::new(model);
     lanes.begin(0, 1, spec).unwrap();
-    lanes.note(0, Noted { stability: eigenvalues(), grows });
+    lanes.note(0, Noted { stability: SlidingStability::example(), grows });
     loop {
         if let Some(ended) = lanes.advance(&mut |_| {}).pop() {
             return ended.result.unwrap().outcome;

@@ -1,75 +1,12 @@
 //! The columns of the export: each figure of a record has one, and names mean one thing.
 
-use crate::synthetic::{record, row};
+use crate::synthetic::row;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use tribosweep_mechanics::analysis::program::{Direction, ProgramWindow};
-use tribosweep_mechanics::analysis::{
-    AboveBand, CoarseStart, ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode,
-    Obstacle, Outcome, Regime, SlidingStability,
-};
+use tribosweep_mechanics::analysis::{JobRecord, Obstacle};
 use tribosweep_output::publish::table::Head;
-use tribosweep_output::report::columns::{ExportColumn, all, plain};
-use tribosweep_output::report::{RowState, SCALARS, columns_of_files, name_and_unit};
-
-/// A record in which every optional figure is present.
-fn full(obstacle: Obstacle) -> JobRecord {
-    let node = |name: &str| ObservedNode {
-        name: name.to_owned(),
-        y_peak_to_peak_m: 0.0,
-        lift_max_m: 0.0,
-        sigma_n_max_pa: 0.0,
-        slip_speed_max_m_s: 0.0,
-    };
-    JobRecord {
-        growth_rate_per_s: Some(-200.0),
-        obstacle: Some(obstacle),
-        start: Some(CoarseStart {
-            elements: [1, 2, 3],
-            outcome: Some(Outcome::Periodic),
-            simulated_s: 0.0,
-            mu_star: Some(0.0),
-            frequency_hz: Some(0.0),
-        }),
-        disk: Some(ElasticDisk {
-            elements: [1, 2, 3],
-            track_element_m: [0.0; 3],
-            longest_edge_m: 0.0,
-            stages: 2,
-            sweeps_mean: 0.0,
-            sweeps_max: 0.0,
-            residual_max: 0.0,
-        }),
-        holder: ["x", "y", "z"]
-            .map(|direction| HolderMotion {
-                direction: direction.to_owned(),
-                peak_to_peak_m: 0.0,
-                acceleration_rms_m_s2: 0.0,
-            })
-            .to_vec(),
-        energy: EnergyTotals::default(),
-        nodes: vec![node("front_centre"), node("rear_centre")],
-        ..record(Outcome::NotPeriodic, Regime::StickSlip, 0.3)
-    }
-}
-
-/// A window at 7 rpm.
-fn window(direction: Direction) -> ProgramWindow {
-    ProgramWindow {
-        time_s: [0.0, 0.001],
-        direction,
-        omega_rpm: 7.0,
-        load_n: 30.0,
-        mu_star: 0.3,
-        mu_star_contact: 0.3,
-        frequency_hz: None,
-        n_amplitude: 0.0,
-        y_peak_to_peak_m: 0.0,
-        stick_share: 0.0,
-        slip_share: 1.0,
-        separated_share: 0.0,
-    }
-}
+use tribosweep_output::report::columns::{ExportColumn, all, fixed, plain};
+use tribosweep_output::report::{RowState, SCALARS, Scalar, columns_of_files};
 
 /// Gives every number in a value another one, and collects them. They are larger than those that are not in the record.
 fn number_all(value: &mut Value, numbers: &mut BTreeSet<u64>) {
@@ -102,7 +39,10 @@ fn names(columns: &[ExportColumn]) -> Vec<&str> {
 fn every_number_of_a_record_has_a_column() {
     let unsteady = Obstacle::Unsteady { figure: "period".to_owned(), spread: 0.1, drift: 0.2 };
     for obstacle in [unsteady, Obstacle::FewCycles { found: 1, needed: 2 }] {
-        let mut stored = serde_json::to_value(full(obstacle)).unwrap();
+        // Modes and windows have tables of their own.
+        let (obstacle, stability, windows) = (Some(obstacle), None, Vec::new());
+        let record = JobRecord { obstacle, stability, windows, ..JobRecord::example() };
+        let mut stored = serde_json::to_value(record).unwrap();
         let mut numbers = BTreeSet::new();
         number_all(&mut stored, &mut numbers);
         let record: JobRecord = serde_json::from_value(stored).unwrap();
@@ -133,37 +73,17 @@ fn names_are_unique() {
     assert!(heads(&all).all(|head| !head.meaning.is_empty()));
 }
 
-/// Protects: the unit of a column is the one at the end of its name, and figures and tables can show numbers of the export
-/// only.
+/// Protects: what figures and tables can show are numbers, and the program finds every column that it calls the error of a quantity.
 #[test]
-fn units_are_those_of_the_names() {
-    for head in heads(&all(&[], &[])) {
-        assert_eq!(name_and_unit(&head.name).1, head.unit, "{}", head.name);
-    }
-    let mode = ComplexMode {
-        frequency_hz: 1.5e4,
-        growth_rate_per_s: -20.0,
-        damping_ratio: 2e-4,
-        residual: 1e-9,
-        is_converged: true,
-    };
-    let stability = SlidingStability {
-        decided: true,
-        contact_nodes: 20,
-        lifted_nodes: 0,
-        mu_star: 0.3,
-        band_hz: 5e4,
-        above_band: AboveBand::NotLookedAt,
-        damped_above_hz: None,
-        modes: vec![mode],
-    };
-    let windows = [Direction::Up, Direction::Down].map(window).into();
-    let record = JobRecord { stability: Some(stability), windows, ..full(Obstacle::SlipOnly) };
-    let row = row(7.0, 0.4, RowState::Done(Box::new(record)));
+fn quantities_are_numbers() {
+    let row = row(7.0, 0.4, RowState::Done(Box::new(JobRecord::example())));
     for scalar in SCALARS.iter() {
         let column = ExportColumn::find(scalar.name).unwrap_or_else(|| panic!("no column {}", scalar.name));
         assert!(column.value(&row).is_number(), "{}", scalar.name);
     }
+    let of_errors: Vec<_> = fixed().filter_map(ExportColumn::error_of).collect();
+    assert_eq!(of_errors, ["mu_star"]);
+    assert!(of_errors.into_iter().all(|name| Scalar::find(name).is_some()));
 }
 
 /// Protects: the values of inputs are in their columns, beside those of the row.

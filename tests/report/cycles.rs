@@ -5,7 +5,7 @@ use crate::svg::{self, Element};
 use crate::synthetic::{periodic, record, report, row, with};
 use std::fs;
 use std::path::Path;
-use tribosweep_mechanics::analysis::{ObservedNode, Outcome, Regime};
+use tribosweep_mechanics::analysis::{JobRecord, Outcome, Regime};
 use tribosweep_output::publish::chart::Axis;
 use tribosweep_output::report::figure::Plot;
 use tribosweep_output::report::{JobRow, RowState, inspections, write};
@@ -14,13 +14,9 @@ use tribosweep_output::report::{JobRow, RowState, inspections, write};
 fn oscillating(omega_rpm: f64, outcome: Outcome, range: [f64; 2], reach_m: f64) -> JobRow {
     let mut own = record(outcome, Regime::StickSlip, 0.3);
     [own.n_over_f_min, own.n_over_f_max] = range;
-    own.nodes = vec![ObservedNode {
-        name: "front_centre".to_owned(),
-        y_peak_to_peak_m: reach_m,
-        lift_max_m: 0.0,
-        sigma_n_max_pa: 1e6,
-        slip_speed_max_m_s: 0.1,
-    }];
+    own.nodes = JobRecord::example().nodes;
+    own.nodes.truncate(1);
+    own.nodes[0].y_peak_to_peak_m = reach_m;
     row(omega_rpm, 0.4, RowState::Done(Box::new(own)))
 }
 

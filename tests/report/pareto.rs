@@ -6,8 +6,19 @@ use crate::synthetic::{failed, record, row, with};
 use std::fs;
 use tribosweep_mechanics::analysis::{Outcome, Regime};
 use tribosweep_output::report::pareto::refinement::{Level, Unclean, limit, observed_order};
-use tribosweep_output::report::pareto::{Direction, ParetoError, chart, compare, markdown, on_front, write};
+use tribosweep_output::report::pareto::{
+    self, Comparison, Direction, ParetoError, chart, markdown, on_front, write,
+};
 use tribosweep_output::report::{JobNumerics, JobRow, RowState};
+
+/// The parameters of these tests that are numerics.
+fn is_numerics(name: &str) -> bool {
+    !matches!(name, "omega_rpm" | "mu" | "young_modulus_pa" | "load_n" | "beta_r_s" | "clamp_width_m")
+}
+
+fn compare(rows: &[JobRow]) -> Result<Comparison<'_>, ParetoError> {
+    pareto::compare(rows, is_numerics)
+}
 
 /// A cube of n × n × n elements of 1/n mm; the step is in proportion.
 fn numerics(n: usize, safety_factor: f64) -> JobNumerics {

@@ -5,8 +5,8 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use tribosweep_mechanics::analysis::program::{Direction, ProgramWindow};
-use tribosweep_mechanics::analysis::{AboveBand, ComplexMode, Outcome, Regime, SlidingStability};
+use tribosweep_mechanics::analysis::program::ProgramWindow;
+use tribosweep_mechanics::analysis::{Outcome, Regime, SlidingStability};
 use tribosweep_output::report::{
     Basin, BranchPoint, Crossing, Findings, JobRow, Minimum, Report, RowState, StabilityPoint, write,
 };
@@ -16,27 +16,10 @@ const WIDTHS_M: [f64; 3] = [0.002, 0.003, 0.004];
 /// Tables of points are all files but these.
 const OTHERS: [&str; 1] = ["waves.csv"];
 
-fn window() -> ProgramWindow {
-    ProgramWindow {
-        time_s: [0.0, 0.01],
-        direction: Direction::Hold,
-        omega_rpm: 7.0,
-        load_n: 30.0,
-        mu_star: 0.3,
-        mu_star_contact: 0.3,
-        frequency_hz: None,
-        n_amplitude: 0.1,
-        y_peak_to_peak_m: 1e-6,
-        stick_share: 0.25,
-        slip_share: 0.5,
-        separated_share: 0.25,
-    }
-}
-
 /// A job with a window, so that the report has a table of windows.
 fn job(study: &str, omega_rpm: f64, mu: f64, width_m: f64) -> JobRow {
     let mut record = record(Outcome::Completed, Regime::StickSlip, mu);
-    record.windows = vec![window()];
+    record.windows = vec![ProgramWindow::example()];
     let mut job = with(row(omega_rpm, mu, RowState::Done(Box::new(record))), "clamp_width_m", width_m);
     study.clone_into(&mut job.study);
     job.job = format!("{study}-{}", job.job);
@@ -45,23 +28,8 @@ fn job(study: &str, omega_rpm: f64, mu: f64, width_m: f64) -> JobRow {
 
 fn point(row: &JobRow) -> StabilityPoint {
     let growth_rate_per_s = 1000.0 * (row.mu - 0.3);
-    let mode = ComplexMode {
-        frequency_hz: 15e3,
-        growth_rate_per_s,
-        damping_ratio: 1e-3,
-        residual: 1e-9,
-        is_converged: true,
-    };
-    let stability = SlidingStability {
-        decided: false,
-        contact_nodes: 30,
-        lifted_nodes: 2,
-        mu_star: row.mu,
-        band_hz: 5e4,
-        above_band: AboveBand::Nothing,
-        damped_above_hz: None,
-        modes: vec![mode],
-    };
+    let mut stability = SlidingStability { mu_star: row.mu, ..SlidingStability::example() };
+    stability.modes[0].growth_rate_per_s = growth_rate_per_s;
     let parameters = row.parameters.clone();
     StabilityPoint { omega_rpm: row.omega_rpm, mu: row.mu, parameters, on_grid: true, stability }
 }

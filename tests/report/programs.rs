@@ -23,15 +23,10 @@ fn up_and_down(mu: f64) -> JobRow {
             time_s: [0.01 * f64::from(k), 0.01 * f64::from(k + 1)],
             direction,
             omega_rpm,
-            load_n: 30.0,
             mu_star: mu - 0.001 * omega_rpm + more,
             mu_star_contact: mu,
             frequency_hz: (k % 2 == 1).then_some(15e3),
-            n_amplitude: 0.25,
-            y_peak_to_peak_m: 1e-6,
-            stick_share: 0.25,
-            slip_share: 0.5,
-            separated_share: 0.25,
+            ..ProgramWindow::example()
         }
     };
     let mut record = record(Outcome::Completed, Regime::StickSlip, mu);

@@ -31,16 +31,8 @@ fn mode(frequency_hz: f64, growth_rate_per_s: f64) -> ComplexMode {
 /// A point with a mode that grows above its threshold, and one that always decays.
 fn point(omega_rpm: f64, mu: f64) -> StabilityPoint {
     let modes = vec![mode(15_000.0, 1000.0 * (mu - mu_c(omega_rpm))), mode(21_000.0, -800.0)];
-    let stability = SlidingStability {
-        decided: false,
-        contact_nodes: 30,
-        lifted_nodes: 2,
-        mu_star: mu,
-        band_hz: 5e4,
-        above_band: AboveBand::Nothing,
-        damped_above_hz: None,
-        modes,
-    };
+    let above_band = AboveBand::Nothing;
+    let stability = SlidingStability { mu_star: mu, above_band, modes, ..SlidingStability::example() };
     let parameters = vec![("omega_rpm".to_owned(), omega_rpm.into()), ("mu".to_owned(), mu.into())];
     StabilityPoint { omega_rpm, mu, parameters, on_grid: true, stability }
 }

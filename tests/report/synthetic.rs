@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use std::sync::{Arc, LazyLock};
-use tribosweep_mechanics::analysis::{EnergyTotals, JobRecord, Outcome, Regime};
+use tribosweep_mechanics::analysis::{JobRecord, Outcome, Regime};
 use tribosweep_output::publish::{Drawing, Sheet, SheetGroup, SheetLine};
 use tribosweep_output::report::{
     Discretisation, JobRow, MeasuredValue, Measurement, MeshError, Report, RowState, View,
@@ -49,31 +49,8 @@ pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
         outcome,
         regime,
         mu_star,
-        mu_star_se: 0.0005,
         mu_star_contact: mu_star,
         frequency_hz: (regime != Regime::Stable).then_some(14_512.4),
-        stick_share: 0.25,
-        slip_share: 0.5,
-        separated_share: 0.25,
-        n_over_f_min: 0.5,
-        n_over_f_max: 1.5,
-        sigma_n_max_pa: 1.25e6,
-        slip_speed_max_m_s: 0.125,
-        lift_max_m: 3.0e-7,
-        cycles: 40,
-        crossings_per_cycle: 1,
-        simulated_s: 0.0875,
-        window_start_s: 0.08,
-        steps: 350_000,
-        time_step_s: 2.5e-7,
-        time_step_limit_s: 5e-7,
-        clamp_width_m: 0.001,
-        energy_residual: 1.5e-9,
-        macroscopic_identity_residual: -3e-4,
-        energy_identity_residual: 1e-4,
-        contact_loss_share: 0.01,
-        mu_reduction_stick: 0.05,
-        mu_reduction_slip: 0.02,
         growth_rate_per_s: None,
         obstacle: None,
         stability: None,
@@ -81,8 +58,8 @@ pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
         disk: None,
         holder: Vec::new(),
         windows: Vec::new(),
-        energy: EnergyTotals::default(),
         nodes: Vec::new(),
+        ..JobRecord::example()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Protects: a key identifies a result. Whatever can change the result changes the key, and nothing else does.
 
 use super::parse;
-use serde_json::Value;
+use serde_json::{Value, json};
 use tribosweep::spec::{
     Base, ClampSide, Contact, DiskKind, FrictionLaw, HeightMap, Holder, JobSpec, MeshFile, Precision, Region,
     Roughness, Shape, StabilityMethod, Start,
@@ -378,6 +378,34 @@ fn a_key_has_what_is_not_a_default() {
     let text =
         r#""1"{"numerics":{"time_step_s":1e-8},"scene":{"contact":{"mu":0.2},"disk":{"kind":"elastic"}}}"#;
     assert_eq!(key(&spec), hash(text));
+}
+
+/// Protects: no field of any parameter enters the key with its default value, whether the value is given or left out, also beside fields that
+/// have other values.
+#[test]
+fn no_field_enters_the_key_with_its_default() {
+    let defaults = serde_json::to_value(JobSpec::default()).unwrap();
+    let others = serde_json::to_value(full()).unwrap();
+    let key_of_json = |job: &Value| key(&serde_json::from_value(job.clone()).unwrap());
+    let mut given = 0;
+    for parameter in PARAMETERS.iter().filter(|parameter| parameter.part().is_some()) {
+        let name = parameter.name;
+        let (parent, field) = parameter.pointer.rsplit_once('/').unwrap();
+        let default = defaults.pointer(parameter.pointer).cloned().unwrap_or_default();
+        if !default.is_null() {
+            let text = json!({ "grid": { name: [default] } }).to_string();
+            assert_eq!(key_of(&text), key(&JobSpec::default()), "{name}");
+            given += 1;
+        }
+        // An entry of a list cannot be left out.
+        let mut left_out = others.clone();
+        let Some(Value::Object(fields)) = left_out.pointer_mut(parent) else { continue };
+        fields.remove(field);
+        let mut with_default = left_out.clone();
+        with_default.pointer_mut(parent).unwrap()[field] = default;
+        assert_eq!(key_of_json(&left_out), key_of_json(&with_default), "{name}");
+    }
+    assert!(given > 45, "{given}");
 }
 
 /// Protects: keys are stored, and they have no default values. A change of a default value must raise `solver::VERSION`; then the new

@@ -180,7 +180,7 @@ fn the_grid_has_exactly_the_parameters_of_the_registry() {
     assert_eq!(found, names);
     assert_eq!(grid["additionalProperties"], Value::Bool(false));
     for parameter in PARAMETERS {
-        assert_eq!(grid["properties"][parameter.name]["description"], parameter.doc);
+        assert_eq!(grid["properties"][parameter.name]["description"], parameter.doc());
     }
 }
 
@@ -289,16 +289,26 @@ fn the_schema_has_the_limits_of_the_program() {
     assert!(of_grid > 80, "{of_grid}");
 }
 
-/// Protects: the unit at the end of a parameter's name is its unit in the registry, so that values are shown in it.
+/// Words of units at the ends of names.
+#[cfg(feature = "report")]
+const UNIT_WORDS: [&str; 15] =
+    ["rpm", "deg", "rad", "kg", "m", "m2", "m3", "s", "s2", "n", "nm", "pa", "hz", "j", "per"];
+
+/// Protects: the unit at the end of a name is the whole unit, and a name with a unit that nobody knows is noticed: no word of a unit is left
+/// in front of it. All parameters and columns have their units from their names.
 #[cfg(feature = "report")]
 #[test]
 fn names_end_with_their_units() {
-    for parameter in PARAMETERS {
-        assert_eq!(
-            tribosweep::report::name_and_unit(parameter.name).1,
-            parameter.unit().unwrap_or_default(),
-            "{}",
-            parameter.name
-        );
+    let parameters = PARAMETERS.iter().map(|parameter| (parameter.name, parameter.unit));
+    let columns =
+        tribosweep::report::columns::fixed().map(|own| (&*own.column.head.name, &*own.column.head.unit));
+    let mut with_unit = 0;
+    for (name, unit) in parameters.chain(columns) {
+        let (stem, of_name) = tribosweep::units::name_and_unit(name);
+        assert_eq!(of_name, unit, "{name}");
+        let last = stem.rsplit('_').next().unwrap();
+        assert!(!UNIT_WORDS.contains(&last), "{name}: {stem} [{unit}]");
+        with_unit += usize::from(!unit.is_empty());
     }
+    assert!(with_unit > 90, "{with_unit}");
 }

@@ -121,11 +121,10 @@ fn every_parameter_of_the_registry_reaches_its_field() {
     let study = parse("{}");
     for parameter in PARAMETERS {
         let text = message(&single(&study, &[(parameter.name, "{\"no\": 1}")]).unwrap_err());
-        assert_contains(&text, &[&format!("--set: {} = ", parameter.name), "expected", parameter.doc]);
+        assert_contains(&text, &[&format!("--set: {} = ", parameter.name), "expected", &parameter.doc()]);
         let same_name = PARAMETERS.iter().filter(|other| other.name == parameter.name).count();
         let same_field = PARAMETERS.iter().filter(|other| other.pointer == parameter.pointer).count();
         assert_eq!((same_name, same_field), (1, 1), "{}", parameter.name);
-        assert!(parameter.doc.ends_with(']'), "{} has no unit", parameter.name);
     }
 }
 

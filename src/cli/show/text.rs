@@ -4,7 +4,7 @@ use super::parsed;
 use crate::analysis::{AboveBand, ComplexMode, SlidingStability};
 use crate::publish::table::{Column, Table, listed};
 use crate::publish::value::{self, MISSING};
-use crate::report::columns::{ExportColumn, FURTHER, Group, PLAIN};
+use crate::report::columns::{ExportColumn, Group, columns, fixed};
 use crate::report::{JobRow, assignment};
 use crate::spec::JobSpec;
 use crate::study::{Input, inputs};
@@ -24,7 +24,7 @@ const PARTS: [(&str, &str); 5] = [
 ];
 
 /// The columns that the head or the provenance of the text has.
-const ELSEWHERE: [&str; 6] = ["study", "job", "omega_rpm", "mu", "status", "wall_s"];
+static ELSEWHERE: [&ExportColumn; 6] = columns(["study", "job", "omega_rpm", "mu", "status", "wall_s"]);
 
 /// Everything about a job of a database, for a terminal of `width` characters or for a file.
 pub(super) fn of_job(job: &StoredJob, width: Option<usize>) -> String {
@@ -110,14 +110,13 @@ fn head(job: &StoredJob, row: Option<&JobRow>) -> Vec<[String; 2]> {
 
 /// An input with its value as people write it.
 fn input_cells(Input { parameter, value }: &Input) -> [String; 3] {
-    let unit = parameter.unit().unwrap_or_default();
-    [parameter.column().to_owned(), written(value, unit, None), parameter.description().to_owned()]
+    [parameter.column().to_owned(), written(value, parameter.unit, None), parameter.meaning.to_owned()]
 }
 
 /// The figures of a group that the record has.
 fn figures(row: &JobRow, group: Group) -> Vec<[String; 3]> {
-    let columns = PLAIN.iter().chain(&FURTHER).filter(|column| column.group == group);
-    let shown = columns.filter(|column| !ELSEWHERE.contains(&&*column.column.head.name));
+    let is_elsewhere = |own: &ExportColumn| ELSEWHERE.iter().any(|other| std::ptr::eq(own, *other));
+    let shown = fixed().filter(|own| own.group == group && !is_elsewhere(own));
     let cells = shown.map(|column| (column, column.value(row))).filter(|(_, value)| !value.is_null());
     let line = |(column, value): (&ExportColumn, Value)| {
         let head = &column.column.head;

@@ -1,14 +1,18 @@
-//! The columns of the export: name, unit, meaning, and how a column is read from a job. This is the only list of them. The
-//! header, the cells, `tribosweep columns`, `tribosweep show` and docs/columns.md come from it.
+//! The columns of the export: name, group, meaning, how figures and tables show a column, and how it is read from a job. This is the only
+//! list of them. The header, the cells, titles of axes, digits, `tribosweep columns`, `tribosweep show` and docs/columns.md come from it.
 
 mod fixed;
+mod shown;
 
 pub use fixed::{FURTHER, PLAIN};
+pub(super) use shown::{Digits, Last, Shown};
 
 use super::parameters::is_further;
 use super::row::{JobRow, RowState};
 use crate::publish::table::{Column, Head};
+use crate::units::name_and_unit;
 use serde_json::Value;
+use std::borrow::Cow;
 
 /// A column of the export.
 #[derive(Debug, Clone)]
@@ -17,6 +21,8 @@ pub struct ExportColumn {
     pub group: Group,
     /// Its name, unique among the columns of an export, with its values.
     pub column: Column<JobRow>,
+    /// How figures and tables show it, if it is a number of a run.
+    pub(super) shown: Option<Shown>,
 }
 
 /// What a column is about.
@@ -79,33 +85,103 @@ impl Group {
     }
 }
 
-const fn of_row(
+/// A number of a run.
+const fn quantity(
     name: &'static str,
-    unit: &'static str,
+    group: Group,
+    shown: Shown,
+    meaning: &'static str,
+    read: fn(&JobRow) -> Value,
+) -> ExportColumn {
+    let column = Column::new(name, name_and_unit(name).1, meaning, read);
+    ExportColumn { group, column, shown: Some(shown) }
+}
+
+/// What is no number of a run: words, an input, or what only some runs have that are not periodic.
+const fn detail(
+    name: &'static str,
     group: Group,
     meaning: &'static str,
     read: fn(&JobRow) -> Value,
 ) -> ExportColumn {
-    ExportColumn { group, column: Column::new(name, unit, meaning, read) }
+    let column = Column::new(name, name_and_unit(name).1, meaning, read);
+    ExportColumn { group, column, shown: None }
+}
+
+/// The fixed columns of these names, for a list in the program. One that does not exist is an error of the compiler, where the list is a
+/// `const` or a `static`.
+///
+/// # Panics
+/// If there is no such column.
+pub const fn columns<const N: usize>(names: [&str; N]) -> [&'static ExportColumn; N] {
+    let mut found = [&PLAIN[0]; N];
+    let mut number = 0;
+    while number < N {
+        found[number] = column(names[number]);
+        number += 1;
+    }
+    found
+}
+
+/// As [`columns`], for one name.
+///
+/// # Panics
+/// If there is no such column.
+pub const fn column(name: &str) -> &'static ExportColumn {
+    let mut number = 0;
+    while number < PLAIN.len() + FURTHER.len() {
+        let own = if number < PLAIN.len() { &PLAIN[number] } else { &FURTHER[number - PLAIN.len()] };
+        if let Cow::Borrowed(known) = own.column.head.name
+            && is_same(known.as_bytes(), name.as_bytes())
+        {
+            return own;
+        }
+        number += 1;
+    }
+    panic!("the export has no column of that name")
+}
+
+/// Constants cannot compare texts otherwise.
+const fn is_same(a: &[u8], b: &[u8]) -> bool {
+    match (a, b) {
+        ([], []) => true,
+        ([a, rest_of_a @ ..], [b, rest_of_b @ ..]) => *a == *b && is_same(rest_of_a, rest_of_b),
+        _ => false,
+    }
+}
+
+/// The fixed columns, of a job or of its record.
+pub fn fixed() -> impl Iterator<Item = &'static ExportColumn> {
+    PLAIN.iter().chain(FURTHER)
 }
 
 impl ExportColumn {
     /// The fixed column of that name, of a job or of its record.
     pub fn find(name: &str) -> Option<&'static Self> {
-        PLAIN.iter().chain(&FURTHER).find(|own| own.column.head.name == name)
+        fixed().find(|own| own.column.head.name == name)
     }
 
     /// Its value for a job or for a measured point, which has what its file gives.
     pub fn value(&self, row: &JobRow) -> Value {
         match &row.state {
             RowState::Measured(point) if !matches!(self.group, Group::Job | Group::Input) => {
-                match &*self.column.head.name {
-                    "mu_star_se" => point.value("mu_star").and_then(|own| own.error).into(),
-                    name => point.value(name).map(|own| own.value).into(),
+                match self.error_of() {
+                    Some(name) => point.value(name).and_then(|own| own.error).into(),
+                    None => point.value(&self.column.head.name).map(|own| own.value).into(),
                 }
             }
             _ => self.column.value(row),
         }
+    }
+
+    /// Its symbol; empty without one.
+    pub fn symbol(&self) -> &'static str {
+        self.shown.map_or("", |shown| shown.symbol)
+    }
+
+    /// The name of the quantity whose statistical error it is; none if it is no such error.
+    pub fn error_of(&self) -> Option<&'static str> {
+        self.shown.map(|shown| shown.error_of).filter(|name| !name.is_empty())
     }
 
     /// As a column of a table that may have measured points.
@@ -114,7 +190,7 @@ impl ExportColumn {
     }
 
     fn of_input(head: Head, read: impl Fn(&JobRow) -> Value + Send + Sync + 'static) -> Self {
-        Self { group: Group::Input, column: Column::made(head, read) }
+        Self { group: Group::Input, column: Column::made(head, read), shown: None }
     }
 }
 
@@ -135,9 +211,7 @@ pub fn all(inputs: &[Head], grid: &[String]) -> Vec<ExportColumn> {
     };
     let inputs_left = inputs.iter().enumerate().filter(|(_, input)| is_further(&input.name));
     let is_new = |name: &&String| !inputs.iter().any(|input| input.name == **name);
-    PLAIN
-        .iter()
-        .chain(&FURTHER)
+    fixed()
         .cloned()
         .chain(inputs_left.map(of_input))
         .chain(of_parameters(grid.iter().filter(is_new)))
@@ -149,10 +223,13 @@ pub(super) fn any_quantity() -> Head {
     Head::new("QUANTITY", "", "the quantity, a column of the export")
 }
 
+/// What comes first and last in the data behind a figure.
+static FIRST: [&ExportColumn; 3] = columns(["job", "omega_rpm", "mu"]);
+static LAST: &ExportColumn = column("status");
+
 /// The columns of the data behind a figure that shows these: a job's key, ω and μ come first, and its status last.
-pub(super) fn selected<'a>(columns: &'a [&'a str]) -> impl Iterator<Item = &'static ExportColumn> + 'a {
-    let names = ["job", "omega_rpm", "mu"].into_iter().chain(columns.iter().copied()).chain(["status"]);
-    names.filter_map(ExportColumn::find)
+pub(super) fn selected(columns: &[&'static ExportColumn]) -> impl Iterator<Item = &'static ExportColumn> {
+    FIRST.into_iter().chain(columns.iter().copied()).chain([LAST])
 }
 
 /// Columns of grid parameters.

@@ -8,11 +8,12 @@ mod packed;
 use super::columns;
 use super::export::further_names;
 use super::input::Report;
-use super::parameters::{MU, OMEGA, name_and_unit};
+use super::parameters::{MU, OMEGA};
 use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::sensitivity::{self, REGIME, sensitivities};
 use crate::publish::{SheetLine, html, value};
+use crate::units::name_and_unit;
 use maud::{Markup, PreEscaped, html};
 use packed::{Values, write_embedded};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -115,7 +116,7 @@ fn data<'a>(report: &Report<'a>, pages: &'a HashMap<String, String>) -> Data<'a>
         let (name, unit, meaning) = (&*head.name, &*head.unit, &*head.meaning);
         Some(ColumnData { name, unit, meaning, kind: own.group.name(), values })
     };
-    let results: Vec<_> = columns::PLAIN.iter().chain(&columns::FURTHER).collect();
+    let results: Vec<_> = columns::fixed().collect();
     let results = results.into_par_iter().filter(|own| ![OMEGA, MU].contains(&&*own.column.head.name));
     let mut columns: Vec<_> = given.collect();
     columns.extend(results.filter_map(of_column).collect::<Vec<_>>());
@@ -135,7 +136,7 @@ fn data<'a>(report: &Report<'a>, pages: &'a HashMap<String, String>) -> Data<'a>
         start: json!({
             "x": view.x.as_deref().unwrap_or(OMEGA),
             "by": view.by.as_deref().unwrap_or(MU),
-            "y": view.y.iter().map(|scalar| scalar.name).chain(["mu_star"]).next(),
+            "y": view.y.iter().map(|scalar| scalar.name).chain([MU_STAR.name]).next(),
         }),
     }
 }
@@ -154,7 +155,7 @@ fn importance(report: &Report) -> Vec<Value> {
         return Vec::new();
     }
     let of: Vec<&'static Scalar> =
-        [*MU_STAR, *FREQUENCY].into_iter().chain(report.view.y.iter().copied()).collect();
+        [MU_STAR, FREQUENCY].into_iter().chain(report.view.y.iter().copied()).collect();
     let jobs: Vec<JobRow> = report.rows.iter().filter(|row| !row.is_measured()).cloned().collect();
     let found = sensitivities(&jobs, &of, report.view.is_morris);
     let of_quantity = |own: &sensitivity::Sensitivity| {

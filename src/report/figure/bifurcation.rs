@@ -2,78 +2,54 @@
 //! has N/F = 1 and no amplitude; a limit cycle has two values of N/F and an amplitude.
 
 use super::places::{self, Place};
-use crate::analysis::{JobRecord, Outcome};
+use crate::analysis::Outcome;
 use crate::publish::chart::palette::GREY;
 use crate::publish::chart::{Axis, Chart, Entry, Guide, Layer, Marker, Panel, Pen, Point, Scale, Shape};
 use crate::publish::value;
 use crate::report::layout::{Group, Layout};
+use crate::report::scalar::Scalar;
 
 /// Micrometres per metre.
 const MICRO: f64 = 1e6;
 /// Half the size of a marker \[px\].
 const RADIUS: f64 = 4.0;
 
-/// A figure of a record that a panel shows.
-struct Quantity {
-    name: &'static str,
+/// A quantity that a panel shows.
+struct Shown {
+    scalar: Scalar,
     label: &'static str,
     shape: Shape,
     /// Whether a line joins its points.
     joined: bool,
-    of: fn(&JobRecord) -> Option<f64>,
 }
 
-/// What a panel shows: its ordinate, a level that steady sliding has, and the least height of the ordinate.
+/// What a panel shows: its ordinate, what the quantities are multiplied by there, a level that steady sliding has, and the least height of
+/// the ordinate.
 struct Kind {
     label: &'static str,
+    factor: f64,
     level: f64,
     least: f64,
-    quantities: &'static [Quantity],
+    quantities: &'static [Shown],
 }
 
-fn peak_to_peak_um(record: &JobRecord, name: &str) -> Option<f64> {
-    record.nodes.iter().find(|node| node.name == name).map(|node| node.y_peak_to_peak_m * MICRO)
+const fn shown(name: &str, label: &'static str, shape: Shape, joined: bool) -> Shown {
+    Shown { scalar: Scalar::of(name), label, shape, joined }
 }
 
-const HIGHEST: Quantity = Quantity {
-    name: "n_over_f_max",
-    label: "largest N/F",
-    shape: Shape::Up,
-    joined: true,
-    of: |record| Some(record.n_over_f_max),
-};
-const LOWEST: Quantity = Quantity {
-    name: "n_over_f_min",
-    label: "smallest N/F",
-    shape: Shape::Down,
-    joined: true,
-    of: |record| Some(record.n_over_f_min),
-};
-const FRONT: Quantity = Quantity {
-    name: "front_centre_y_peak_to_peak_m",
-    label: "front centre",
-    shape: Shape::Circle,
-    joined: true,
-    of: |record| peak_to_peak_um(record, "front_centre"),
-};
-const REAR: Quantity = Quantity {
-    name: "rear_centre_y_peak_to_peak_m",
-    label: "rear centre",
-    shape: Shape::Square,
-    joined: false,
-    of: |record| peak_to_peak_um(record, "rear_centre"),
-};
-const LIFT: Quantity = Quantity {
-    name: "lift_max_m",
-    label: "largest gap",
-    shape: Shape::Circle,
-    joined: true,
-    of: |record| Some(record.lift_max_m * MICRO),
-};
-const KINDS: [Kind; 3] = [
-    Kind { label: "N/F", level: 1.0, least: 0.1, quantities: &[HIGHEST, LOWEST] },
-    Kind { label: "range of y [µm]", level: 0.0, least: 0.01, quantities: &[FRONT, REAR] },
-    Kind { label: "lift [µm]", level: 0.0, least: 0.01, quantities: &[LIFT] },
+static RANGE: [Shown; 2] = [
+    shown("n_over_f_max", "largest N/F", Shape::Up, true),
+    shown("n_over_f_min", "smallest N/F", Shape::Down, true),
+];
+static AMPLITUDES: [Shown; 2] = [
+    shown("front_centre_y_peak_to_peak_m", "front centre", Shape::Circle, true),
+    shown("rear_centre_y_peak_to_peak_m", "rear centre", Shape::Square, false),
+];
+static LIFT: [Shown; 1] = [shown("lift_max_m", "largest gap", Shape::Circle, true)];
+static KINDS: [Kind; 3] = [
+    Kind { label: "N/F", factor: 1.0, level: 1.0, least: 0.1, quantities: &RANGE },
+    Kind { label: "range of y [µm]", factor: MICRO, level: 0.0, least: 0.01, quantities: &AMPLITUDES },
+    Kind { label: "lift [µm]", factor: MICRO, level: 0.0, least: 0.01, quantities: &LIFT },
 ];
 
 /// The panels of a group one above the other, with a common abscissa.
@@ -85,7 +61,7 @@ pub(super) fn draw(layout: &Layout, group: &Group) -> Chart {
     legend.extend(looks.iter().map(|look| Entry::line(Pen::solid(look.colour, 2.0), &look.name)));
     for kind in &KINDS {
         legend.push(Entry::heading(kind.label));
-        let shape = |own: &Quantity| Entry::marker(Marker::new(own.shape, GREY).sized(RADIUS), own.label);
+        let shape = |own: &Shown| Entry::marker(Marker::new(own.shape, GREY).sized(RADIUS), own.label);
         legend.extend(kind.quantities.iter().map(shape));
     }
     if all.iter().any(is_hollow) {
@@ -101,23 +77,22 @@ fn is_hollow(place: &Place) -> bool {
     place.row.record().is_some_and(|record| record.outcome == Outcome::NotPeriodic)
 }
 
-impl Quantity {
-    /// The value of a job that has one.
-    fn value(&self, place: &Place) -> Option<f64> {
-        (self.of)(place.row.record()?).filter(|y| y.is_finite())
+impl Kind {
+    /// The value of a job that has one, in the unit of the ordinate.
+    fn value(&self, quantity: &Shown, place: &Place) -> Option<f64> {
+        place.row.record()?;
+        Some(quantity.scalar.value(place.row)? * self.factor)
     }
 
-    fn point(&self, place: &Place, looks: &[places::SeriesLook]) -> Option<Point> {
-        let y = self.value(place)?;
-        let marker = Marker::new(self.shape, looks[place.series].colour).sized(RADIUS);
-        let tip = place.tip([("y", value::number(y)), ("kind", self.name.to_owned())]);
+    fn point(&self, quantity: &Shown, place: &Place, looks: &[places::SeriesLook]) -> Option<Point> {
+        let y = self.value(quantity, place)?;
+        let marker = Marker::new(quantity.shape, looks[place.series].colour).sized(RADIUS);
+        let tip = place.tip([("y", value::number(y)), ("kind", quantity.scalar.name.to_owned())]);
         Some(Point { at: (place.x, y), error: 0.0, marker: marker.hollow(is_hollow(place)), tip: Some(tip) })
     }
-}
 
-impl Kind {
     fn panel(&self, x: &Scale, all: &[Place], looks: &[places::SeriesLook]) -> Panel {
-        let value_of = |own: &'static Quantity| all.iter().filter_map(move |place| own.value(place));
+        let value_of = |own| all.iter().filter_map(move |place| self.value(own, place));
         let (low, high) = self
             .quantities
             .iter()
@@ -138,13 +113,13 @@ impl Kind {
         for own in all.chunk_by(|a, b| a.series == b.series) {
             for quantity in self.quantities.iter().filter(|quantity| quantity.joined) {
                 // A job without a result interrupts the line.
-                let at = |place: &Place| (place.x, quantity.value(place).unwrap_or(f64::NAN));
+                let at = |place: &Place| (place.x, self.value(quantity, place).unwrap_or(f64::NAN));
                 let pen = Pen { cover: 0.7, ..Pen::solid(looks[own[0].series].colour, 1.5) };
                 let points = own.iter().map(at).collect();
                 panel.layers.push(Layer::Line { points, pen, right: false });
             }
         }
-        let points = |place| self.quantities.iter().filter_map(move |own| own.point(place, looks));
+        let points = |place| self.quantities.iter().filter_map(move |own| self.point(own, place, looks));
         panel.layers.push(Layer::Points(all.iter().flat_map(points).collect()));
         panel
     }

@@ -69,7 +69,7 @@ pub(super) fn draw(layout: &Layout, groups: &[Group], scalar: &Scalar) -> Chart 
     let label = if unit.is_empty() { scalar.title() } else { format!("{} [{unit}]", scalar.meaning) };
     let y = Scale::new(&label, frame.y_axis(&counted, guides.iter().flatten().map(|guide| guide.0)));
     // The guide lines are horizontal; lines of a grid could be taken for them.
-    let y = if scalar == *MU_STAR { y.without_grid() } else { y };
+    let y = if scalar == MU_STAR { y.without_grid() } else { y };
     let panel = |(group, (results, guides)): (&Group, (&Vec<Place>, &Guides))| {
         let layers = frame.layers(results, guides);
         let note = note(scalar).to_owned();
@@ -104,26 +104,16 @@ fn radius(results: &[Vec<Place>]) -> f64 {
 }
 
 fn note(scalar: &Scalar) -> &'static str {
-    if scalar == *FREQUENCY {
+    if scalar == FREQUENCY {
         "no frequencies: no results yet, or all of them stable"
     } else {
         "no results yet"
     }
 }
 
-/// Whether values may have both signs, and a change of the sign matters more than their sizes.
-fn is_signed(scalar: &Scalar) -> bool {
-    ["growth_rate_per_s", "damping_ratio", "residual"].iter().any(|ending| scalar.name.ends_with(ending))
-}
-
 /// The error of mesh and time step relative to the value, and whether it was measured on the job's own scene.
 fn mesh_error(scalar: &Scalar, row: &JobRow) -> Option<(f64, bool)> {
-    let error = row.discretisation.error().filter(|_| scalar.is_settled(row))?;
-    let relative = match scalar {
-        scalar if scalar == *MU_STAR => error.mu_star_relative,
-        scalar if scalar == *FREQUENCY => error.frequency_relative,
-        _ => return None,
-    };
+    let relative = scalar.mesh_error(row).filter(|_| scalar.is_settled(row))?;
     (relative > 0.0).then_some((relative, matches!(row.discretisation, Discretisation::Measured(_))))
 }
 
@@ -165,7 +155,7 @@ impl Frame<'_> {
     /// The friction coefficients at which a panel has a line μ\* = μ, each with its colour. There is none where a law has other
     /// coefficients too, and none if the curves have several coefficients but are not curves of a coefficient.
     fn guides(&self, group: &Group) -> Guides {
-        if self.scalar != *MU_STAR {
+        if self.scalar != MU_STAR {
             return Vec::new();
         }
         let has_one_mu = |series: Option<usize>| {
@@ -205,12 +195,12 @@ impl Frame<'_> {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(*y), high.max(*y)));
         // Smaller differences must not fill the height of the figure.
         let least = match 0.05 * high.abs().max(low.abs()) {
-            _ if self.scalar == *MU_STAR => 0.02,
-            share if self.scalar == *FREQUENCY => share.max(1.0 / self.per_unit),
+            _ if self.scalar == MU_STAR => 0.02,
+            share if self.scalar == FREQUENCY => share.max(1.0 / self.per_unit),
             share if share > 0.0 => share,
             _ => 1.0,
         };
-        if is_signed(self.scalar) && low < 0.0 {
+        if self.scalar.is_signed() && low < 0.0 {
             Axis::around_zero(ends.into_iter(), least)
         } else {
             Axis::spanning(low, high, least)
@@ -317,7 +307,7 @@ impl Frame<'_> {
         let with_value: Vec<&Place> = results.iter().filter(|place| self.value(place).is_some()).collect();
         let is_shown = |series: usize| {
             // Stable jobs have no frequency: a legend with their curves would promise something that is not there.
-            self.scalar != *FREQUENCY || with_value.iter().any(|place| place.series == series)
+            self.scalar != FREQUENCY || with_value.iter().any(|place| place.series == series)
         };
         let shown = (0..layout.series.len()).filter(|&series| is_shown(series));
         let mut values: Vec<_> =

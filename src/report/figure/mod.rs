@@ -10,6 +10,7 @@ mod shares;
 pub(super) mod stability;
 pub(super) mod waterfall;
 
+use super::columns::{ExportColumn, columns};
 use super::layout::{Group, Layout};
 use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
@@ -51,35 +52,40 @@ pub enum Plot {
 }
 
 /// A file with the data behind a figure.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub(super) struct DataFile {
     /// Its name without the ending.
     pub stem: Cow<'static, str>,
-    /// The fields of the export that it has, besides the parameters and the status.
-    pub columns: Cow<'static, [&'static str]>,
+    /// The columns of the export that it has, besides the parameters and the status.
+    pub columns: Cow<'static, [&'static ExportColumn]>,
 }
 
 impl DataFile {
-    const fn new(stem: &'static str, columns: &'static [&'static str]) -> Self {
+    const fn new(stem: &'static str, columns: &'static [&'static ExportColumn]) -> Self {
         Self { stem: Cow::Borrowed(stem), columns: Cow::Borrowed(columns) }
     }
 }
 
 /// The data behind the figure of residuals.
-pub(super) const RESIDUALS: DataFile = DataFile::new("residuals", &["energy_residual", "identity_residual"]);
+pub(super) const RESIDUALS: DataFile = DataFile::new("residuals", &OF_RESIDUALS);
+static OF_RESIDUALS: [&ExportColumn; 2] = columns(["energy_residual", "identity_residual"]);
 /// The data behind the statistics of run times.
-pub(super) const RUN_TIMES: DataFile =
-    DataFile::new("run_times", &["wall_s", "steps", "simulated_s", "time_step_s"]);
+pub(super) const RUN_TIMES: DataFile = DataFile::new("run_times", &OF_RUN_TIMES);
+static OF_RUN_TIMES: [&ExportColumn; 4] = columns(["wall_s", "steps", "simulated_s", "time_step_s"]);
 
-/// The columns behind the bifurcation diagram.
-const BIFURCATION: [&str; 6] = [
+static OF_MU_STAR: [&ExportColumn; 4] = columns(["mu_star", "mu_star_se", "mu_star_contact", "regime"]);
+static OF_FREQUENCY: [&ExportColumn; 2] = columns(["frequency_hz", "regime"]);
+static OF_REGIME: [&ExportColumn; 2] = columns(["regime", "error"]);
+static OF_SHARES: [&ExportColumn; 4] = columns(["stick_share", "slip_share", "separated_share", "regime"]);
+static OF_GROWTH_RATE: [&ExportColumn; 2] = columns(["growth_rate_per_s", "regime"]);
+static OF_BIFURCATION: [&ExportColumn; 6] = columns([
     "n_over_f_min",
     "n_over_f_max",
     "front_centre_y_peak_to_peak_m",
     "rear_centre_y_peak_to_peak_m",
     "lift_max_m",
     "regime",
-];
+]);
 
 impl Plot {
     /// Those of every report.
@@ -98,7 +104,7 @@ impl Plot {
     /// The name of its files without the ending.
     pub fn stem(self) -> &'static str {
         match self {
-            Self::MuStar => "mu_star",
+            Self::MuStar => MU_STAR.name,
             Self::Frequency => "frequency",
             Self::RegimeMap => "regime_map",
             Self::FrequencyMap => "frequency_map",
@@ -114,23 +120,18 @@ impl Plot {
     /// The file with the data behind it.
     pub(super) fn data(self) -> DataFile {
         match self {
-            Self::MuStar => {
-                DataFile::new("mu_star_points", &["mu_star", "mu_star_se", "mu_star_contact", "regime"])
+            Self::MuStar => DataFile::new("mu_star_points", &OF_MU_STAR),
+            // The lines of the spectra of a waterfall are in a file of their own; these columns are those of the dots.
+            Self::Frequency | Self::FrequencyMap | Self::Waterfall => {
+                DataFile::new("frequency_map", &OF_FREQUENCY)
             }
-            Self::Frequency | Self::FrequencyMap => {
-                DataFile::new("frequency_map", &["frequency_hz", "regime"])
-            }
-            Self::RegimeMap | Self::RegimePlane => DataFile::new("regime_map", &["regime", "error"]),
-            Self::Shares => {
-                DataFile::new("shares", &["stick_share", "slip_share", "separated_share", "regime"])
-            }
-            Self::Bifurcation => DataFile::new("bifurcation", &BIFURCATION),
-            Self::GrowthRate => DataFile::new("growth_rate", &["growth_rate_per_s", "regime"]),
-            // The lines of the spectra are in a file of their own; these columns are those of the dots.
-            Self::Waterfall => DataFile::new("frequency_map", &["frequency_hz", "regime"]),
+            Self::RegimeMap | Self::RegimePlane => DataFile::new("regime_map", &OF_REGIME),
+            Self::Shares => DataFile::new("shares", &OF_SHARES),
+            Self::Bifurcation => DataFile::new("bifurcation", &OF_BIFURCATION),
+            Self::GrowthRate => DataFile::new("growth_rate", &OF_GROWTH_RATE),
             Self::Of(scalar) => DataFile {
                 stem: format!("{}_points", scalar.name).into(),
-                columns: vec![scalar.name, "regime"].into(),
+                columns: vec![scalar.column, OF_REGIME[0]].into(),
             },
         }
     }
@@ -138,8 +139,8 @@ impl Plot {
     /// What it shows, in words.
     pub fn title(self) -> Cow<'static, str> {
         match self {
-            Self::MuStar => "macroscopic friction coefficient μ*".into(),
-            Self::Frequency => "frequency".into(),
+            Self::MuStar => MU_STAR.meaning.into(),
+            Self::Frequency => FREQUENCY.meaning.into(),
             Self::RegimeMap => "contact regimes".into(),
             Self::FrequencyMap => "map of frequencies".into(),
             Self::Shares => "shares of stick, slip and separation".into(),
@@ -240,8 +241,8 @@ pub fn figures_with(rows: &[JobRow], view: &View, plot: Plot, points: &[Stabilit
 /// are none for a grid, and none of other plots.
 pub(super) fn over_others(rows: &[JobRow], view: &View, layout: &Layout, plot: Plot) -> Vec<Figure> {
     let scalar = match plot {
-        Plot::MuStar => &MU_STAR,
-        Plot::Frequency => &FREQUENCY,
+        Plot::MuStar => MU_STAR,
+        Plot::Frequency => FREQUENCY,
         Plot::Of(scalar) => scalar,
         _ => return Vec::new(),
     };
@@ -284,8 +285,8 @@ pub(super) fn figures_of(
     };
     let draw = |(number, groups): (usize, &[Group])| {
         let chart = match plot {
-            Plot::MuStar => curves::draw(layout, groups, &MU_STAR),
-            Plot::Frequency => curves::draw(layout, groups, &FREQUENCY),
+            Plot::MuStar => curves::draw(layout, groups, MU_STAR),
+            Plot::Frequency => curves::draw(layout, groups, FREQUENCY),
             Plot::Of(scalar) => curves::draw(layout, groups, scalar),
             Plot::RegimeMap => cells::regimes(layout, groups)?,
             Plot::FrequencyMap => cells::frequencies(layout, groups)?,

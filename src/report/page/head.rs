@@ -9,7 +9,7 @@ use crate::report::accuracy;
 use crate::report::input::Report;
 use crate::report::layout::parameters_in_words;
 use crate::report::row::JobRow;
-use crate::report::scalar::FREQUENCY;
+use crate::report::scalar::{FREQUENCY, MU_STAR};
 use crate::report::summary::{self, Summary};
 use crate::report::tooltip::residual_text;
 use crate::report::{Discretisation, digits};
@@ -66,8 +66,8 @@ fn friction(rows: &[&JobRow]) -> Option<String> {
     }
     // The error over the cycles alone would claim more than is known.
     let mu_star = match row.discretisation.error() {
-        Some(_) => digits::mu_star_with_error(row, record),
-        None => digits::mu_star(row, record),
+        Some(_) => digits::with_error(MU_STAR, row),
+        None => digits::by_error(MU_STAR, row),
     };
     let place = parameters_in_words(row);
     let percent = value::significant(100.0 * record.mu_star / row.mu, 2);
@@ -168,9 +168,7 @@ pub(super) fn numbers(rows: &[JobRow]) -> Vec<Block> {
         Tile::new("missing", summary.missing().to_string(), missing),
     ];
     tiles.extend(
-        lowest(&all).map(|(row, record)| {
-            Tile::new("lowest μ*/μ", digits::ratio(row, record), parameters_in_words(row))
-        }),
+        lowest(&all).map(|(row, _)| Tile::new("lowest μ*/μ", digits::ratio(row), parameters_in_words(row))),
     );
     tiles.extend(error_of_friction(rows));
     tiles.extend(range_khz(&all).map(|range| Tile::new("frequencies", range, "")));

@@ -6,6 +6,7 @@ use crate::publish::value;
 use crate::report::digits;
 use crate::report::layout::parameters_in_words;
 use crate::report::row::{JobRow, RowState};
+use crate::report::scalar::MU_STAR;
 use crate::report::tooltip::short_key;
 use crate::report::trouble;
 
@@ -50,7 +51,7 @@ fn not_periodic(row: &JobRow) -> Option<Text> {
         "{}; after {} μ* = {} over {} cycles",
         trouble::cause(row)?.why,
         value::quantity(record.simulated_s, "s"),
-        digits::mu_star_with_error(row, record),
+        digits::with_error(MU_STAR, row),
         record.cycles
     );
     Some(words.into())

@@ -59,8 +59,13 @@ pub enum ParetoError {
 
 impl<'a> Case<'a> {
     /// The case of `jobs`, which are two or more. `all` are all of its rows, finished or not.
-    fn new(jobs: Vec<DoneJob<'a>>, all: &[&JobRow], names_damping: bool) -> Self {
-        let physics = physics_in_words(jobs[0].row);
+    fn new(
+        jobs: Vec<DoneJob<'a>>,
+        all: &[&JobRow],
+        names_damping: bool,
+        is_numerics: fn(&str) -> bool,
+    ) -> Self {
+        let physics = physics_in_words(jobs[0].row, is_numerics);
         let damping = value::rounded(jobs[0].numerics.beta_r_s);
         let reference = Reference::of(&jobs);
         let is_failed =
@@ -79,11 +84,12 @@ impl<'a> Case<'a> {
 
 /// Compares the finished jobs of each physical case with the finest of them.
 ///
-/// A job that is in `rows` twice (of two studies that share it) counts once.
+/// A job that is in `rows` twice (of two studies that share it) counts once. `is_numerics` says of a parameter whether it changes how a
+/// physical case is solved and not the case.
 ///
 /// # Errors
 /// If there is nothing to compare: fewer than two jobs are done, or none of them are of the same physical case.
-pub fn compare(rows: &[JobRow]) -> Result<Comparison<'_>, ParetoError> {
+pub fn compare(rows: &[JobRow], is_numerics: fn(&str) -> bool) -> Result<Comparison<'_>, ParetoError> {
     let mut seen = std::collections::HashSet::new();
     let rows: Vec<&JobRow> = rows.iter().filter(|row| seen.insert(row.job.as_str())).collect();
     let done = rows.iter().filter(|row| row.record().is_some()).count();
@@ -98,10 +104,10 @@ pub fn compare(rows: &[JobRow]) -> Result<Comparison<'_>, ParetoError> {
         for part in parts {
             let jobs: Vec<DoneJob> = part.iter().filter_map(|row| DoneJob::of(row)).collect();
             if jobs.len() < 2 {
-                let (words, of) = (physics_in_words(part[0]), count(part.len(), "job"));
+                let (words, of) = (physics_in_words(part[0], is_numerics), count(part.len(), "job"));
                 comparison.left_out.push(format!("{words}: {} of {of} done", jobs.len()));
             } else {
-                comparison.cases.push(Case::new(jobs, &part, by_damping));
+                comparison.cases.push(Case::new(jobs, &part, by_damping, is_numerics));
             }
         }
     }

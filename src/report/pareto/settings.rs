@@ -4,15 +4,9 @@ use crate::publish::table::Column;
 use crate::report::parameters::{MU, OMEGA, assignments};
 use crate::report::row::{JobNumerics, JobRow};
 
-/// Grid parameters that change the numerics and are not among [`SETTINGS`].
-const NUMERICS: [&str; 7] =
-    ["nx", "ny", "nz", "time_step_s", "regime_threshold", "decay_observation_s", "stability"];
-
 /// The physical parameters of a job in words, ω and μ first.
-pub(super) fn physics_in_words(row: &JobRow) -> String {
-    let is_numeric =
-        |name: &str| SETTINGS.iter().any(|own| own.head.name == name) || NUMERICS.contains(&name);
-    let further = row.further().filter(|(name, _)| !is_numeric(name));
+pub(super) fn physics_in_words(row: &JobRow, is_numerics: fn(&str) -> bool) -> String {
+    let further = row.further().filter(|(name, _)| !is_numerics(name));
     let further = further.map(|(name, value)| (name, value.clone()));
     assignments([OMEGA, MU].map(|name| (name, row.parameter(name))).into_iter().chain(further))
 }

@@ -8,10 +8,11 @@ use crate::analysis::branches::{Sample, branches};
 use crate::publish::value;
 use crate::report::Discretisation;
 use crate::report::layout::{Group, Layout};
-use crate::report::parameters::{MU, OMEGA, name_and_unit};
+use crate::report::parameters::{MU, OMEGA};
 use crate::report::row::{JobRow, RowState};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
+use crate::units::name_and_unit;
 use serde_json::Value;
 
 /// The points as rows, so that a [`Layout`] can group them. The key of a row is the number of its point. Parameters that move along
@@ -270,16 +271,8 @@ mod tests {
             residual: 1e-9,
             is_converged: true,
         };
-        let stability = SlidingStability {
-            decided: false,
-            contact_nodes: 9,
-            lifted_nodes: 0,
-            mu_star: mu,
-            band_hz: 5e4,
-            above_band: AboveBand::NotLookedAt,
-            damped_above_hz: None,
-            modes: modes.iter().map(mode).collect(),
-        };
+        let modes = modes.iter().map(mode).collect();
+        let stability = SlidingStability { mu_star: mu, modes, ..SlidingStability::example() };
         StabilityPoint { omega_rpm, mu, parameters: Vec::new(), on_grid: true, stability }
     }
 

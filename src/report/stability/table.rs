@@ -10,6 +10,7 @@ use crate::report::layout::Group;
 use crate::report::parameters::{self, MU, OMEGA, is_further};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
+use crate::units::name_and_unit;
 use serde_json::Value;
 
 /// A mode at a point, with its number from 1.
@@ -78,7 +79,7 @@ impl Range<'_> {
 fn of_range<'a>(along: &str) -> [Column<Range<'a>>; 10] {
     let symbol = if along == MU { "μ" } else { along };
     let edge = |end: &str, meaning: String, read: fn(&Range) -> Value| {
-        Column::made(Head::new(format!("{along}_{end}"), parameters::name_and_unit(along).1, meaning), read)
+        Column::made(Head::new(format!("{along}_{end}"), name_and_unit(along).1, meaning), read)
     };
     [
         edge("c", format!("{symbol} at which the mode begins to grow; empty if it grows at the smallest {symbol} already, or at none"), |of| of.read(|onset| onset.below.map(|_| onset.mu))),

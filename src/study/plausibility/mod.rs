@@ -72,17 +72,21 @@ impl fmt::Display for Warning {
 struct Doubt {
     kind: &'static str,
     /// Paths of the fields that may have to be changed, the most likely one first.
-    fields: &'static [&'static str],
+    fields: Vec<String>,
     /// How doubtful the job is, to find the worst job of a kind; without a unit.
     size: f64,
     message: String,
     help: String,
 }
 
+fn owned(fields: &[&str]) -> Vec<String> {
+    fields.iter().map(|&field| field.to_owned()).collect()
+}
+
 /// The doubts about one job. A value in another unit is not followed by its consequences.
 fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     let mut found = units::doubts(spec);
-    let is_in_doubt = |field: &&str| found.iter().any(|doubt| doubt.fields.contains(field));
+    let is_in_doubt = |field: &String| found.iter().any(|doubt| doubt.fields.contains(field));
     let further: Vec<Doubt> =
         physics::doubts(spec).into_iter().filter(|doubt| !doubt.fields.iter().any(is_in_doubt)).collect();
     found.extend(further);
@@ -101,9 +105,9 @@ impl Doubt {
     fn of_job(self, spec: &JobSpec) -> Warning {
         let Self { kind, fields, message, help, .. } = self;
         // A job has no field for what only a study can give, such as a loss factor.
-        let own = fields.iter().find_map(|field| Some((*field, value_of(field, spec)?)));
-        let (field, value) = own.map_or((fields[0], None), |(field, value)| (field, Some(value)));
-        let field = field.to_owned();
+        let own = fields.iter().find_map(|field| Some((field, value_of(field, spec)?)));
+        let (field, value) = own.map_or((&fields[0], None), |(field, value)| (field, Some(value)));
+        let field = field.clone();
         let problem =
             Problem { file: String::new(), position: None, field, value, message, help: vec![help] };
         Warning::new(kind, 1, problem)
@@ -131,7 +135,8 @@ impl Study {
     /// The values that look like another unit, except in the `refused` fields. They are the likely causes of violations.
     pub(super) fn wrong_units(&self, refused: &[&str]) -> Vec<Problem> {
         let shared = self.shared_doubts(units::doubts);
-        let is_refused = |shared: &&Shared| shared.doubt.fields.iter().any(|field| refused.contains(field));
+        let is_refused =
+            |shared: &&Shared| shared.doubt.fields.iter().any(|field| refused.contains(&field.as_str()));
         let other = shared.iter().filter(|shared| !is_refused(shared));
         other.map(|shared| self.warning(shared).problem).collect()
     }
@@ -146,7 +151,7 @@ impl Study {
             };
             for doubt in doubts.into_iter().filter(is_meant) {
                 let same = |other: &&mut Shared| {
-                    (other.doubt.kind, other.doubt.fields) == (doubt.kind, doubt.fields)
+                    other.doubt.kind == doubt.kind && other.doubt.fields == doubt.fields
                 };
                 match found.iter_mut().find(same) {
                     None => found.push(Shared { doubt, worst: point, first: point, jobs: 1 }),

@@ -1,6 +1,6 @@
 //! Jobs outside of what the model and its elements describe.
 
-use super::{Doubt, percent, short};
+use super::{Doubt, owned, percent, short};
 use crate::spec::elasticity::{self, LOCKING_POISSON_RATIO};
 use crate::spec::{ClampSide, DiskKind, FieldError, JobSpec, Shape};
 use std::f64::consts::PI;
@@ -32,14 +32,14 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
         };
         found.push(Doubt {
             kind: "strain",
-            fields: &[
+            fields: owned(&[
                 "scene.load.force_n",
                 "scene.pin.young_modulus_pa",
                 "scene.pin.size_m",
                 "scene.pin.size_m[0]",
                 "scene.pin.size_m[1]",
                 "scene.pin.diameter_m",
-            ],
+            ]),
             size: strain,
             message: format!("the mean strain F/(E A) of the pin is {}; {meaning}", percent(strain)),
             help: "check the units of the load [N], Young's modulus [Pa] and the size [m]".to_owned(),
@@ -56,12 +56,12 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     if speed_m_s > FAST * wave_m_s {
         found.push(Doubt {
             kind: "speed",
-            fields: &[
+            fields: owned(&[
                 "scene.disk.omega_rpm",
                 "scene.disk.track_radius_m",
                 "scene.pin.young_modulus_pa",
                 "scene.pin.density_kg_m3",
-            ],
+            ]),
             size: speed_m_s / wave_m_s,
             message: format!(
                 "the disk's surface moves at {} m/s, {} of the speed of surface waves ({} m/s)",
@@ -76,10 +76,10 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     }
 
     if pin.poisson_ratio >= LOCKING_POISSON_RATIO {
-        found.push(locking(&["scene.pin.poisson_ratio"], pin.poisson_ratio));
+        found.push(locking("scene.pin.poisson_ratio", pin.poisson_ratio));
     }
     if disk.kind == DiskKind::Elastic && disk.ring.poisson_ratio >= LOCKING_POISSON_RATIO {
-        found.push(locking(&["scene.disk.ring.poisson_ratio"], disk.ring.poisson_ratio));
+        found.push(locking("scene.disk.ring.poisson_ratio", disk.ring.poisson_ratio));
     }
 
     // With the damping β_R ω/2 of the fastest oscillation, ω = 2 c_p/h, the limit of the step is (√(1 + ζ²) − ζ) 2/ω.
@@ -91,14 +91,14 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     if step < SHORT_STEP {
         found.push(Doubt {
             kind: "damping",
-            fields: &[
+            fields: owned(&[
                 "damping.loss_factor",
                 "damping.ratio",
                 "numerics.beta_r_s",
                 "scene.pin.elements",
                 "scene.pin.young_modulus_pa",
                 "scene.pin.density_kg_m3",
-            ],
+            ]),
             size: zeta,
             message: format!(
                 "damping shortens the time step to {} of the step without damping, because β_R c/h is {}",
@@ -142,7 +142,7 @@ fn cylinder(spec: &JobSpec) -> Option<Doubt> {
     let [x, y, _] = pin.size_m;
     (differs(x) || differs(y)).then(|| Doubt {
         kind: "size",
-        fields: &["scene.pin.size_m", "scene.pin.size_m[0]", "scene.pin.size_m[1]"],
+        fields: owned(&["scene.pin.size_m", "scene.pin.size_m[0]", "scene.pin.size_m[1]"]),
         size: (x / diameter_m - 1.0).abs().max((y / diameter_m - 1.0).abs()),
         message: format!(
             "a cylinder uses the height size_m[2] alone; the edges of {} m and {} m have no effect beside diameter_m = {} m",
@@ -160,7 +160,7 @@ fn friction(spec: &JobSpec) -> Option<Doubt> {
     let mu_static = contact.mu_static.filter(|mu_static| *mu_static < contact.mu)?;
     Some(Doubt {
         kind: "friction",
-        fields: &["scene.contact.mu_static", "scene.contact.mu"],
+        fields: owned(&["scene.contact.mu_static", "scene.contact.mu"]),
         size: contact.mu - mu_static,
         message: format!(
             "less than mu = {}, so that friction rises as soon as a node slips; are the two exchanged?",
@@ -187,7 +187,7 @@ fn clamp(spec: &JobSpec) -> Option<Doubt> {
     let share = strips * width_m / whole_m;
     let doubt = |fields, message: &str| Doubt {
         kind: "clamp",
-        fields,
+        fields: owned(fields),
         size: share,
         message: message.to_owned(),
         help: "expected the width in metres of the strip that the holder holds".to_owned(),
@@ -217,10 +217,10 @@ fn surface_wave_m_s(young_modulus_pa: f64, poisson_ratio: f64, density_kg_m3: f6
     shear_m_s * (0.87 + 1.12 * poisson_ratio) / (1.0 + poisson_ratio)
 }
 
-fn locking(fields: &'static [&'static str], nu: f64) -> Doubt {
+fn locking(field: &str, nu: f64) -> Doubt {
     Doubt {
         kind: "locking",
-        fields,
+        fields: owned(&[field]),
         size: nu,
         message: "close to ½, where the elements are too stiff (volumetric locking)".to_owned(),
         help: "measured on the reference pin: on 12 × 15 × 10 elements it deflects 5.9 % too little at ν = 0.3, 9.1 % at \

@@ -1,6 +1,6 @@
 //! Coefficients of friction that nothing uses.
 
-use super::{Doubt, Shared, Warning, job_warnings};
+use super::{Doubt, Shared, Warning, job_warnings, owned};
 use crate::spec::{COEFFICIENTS, FrictionLaw, JobSpec};
 use crate::study::definition::Study;
 use strum::VariantArray;
@@ -32,7 +32,7 @@ fn unused<'a>(
         let verb = if laws.len() == 1 { "does" } else { "do" };
         let doubt = Doubt {
             kind: "unused",
-            fields: std::slice::from_ref(&coefficient.field),
+            fields: owned(&[coefficient.field]),
             size: 0.0,
             message: format!("without effect: the friction {} {verb} not use it", in_words(&laws)),
             help: format!(

@@ -1,11 +1,10 @@
 //! Inputs and derived quantities as lines of a table.
 
 use super::survey::{InputValues, Survey};
-use super::symbols;
-use crate::analysis::JobRecord;
 use crate::publish::value::{self, multiple, quantity, rounded, significant};
 use crate::publish::{SheetGroup, SheetLine};
 use crate::report::JobRow;
+use crate::report::columns::{ExportColumn, column};
 use crate::study::Parameter;
 use serde_json::Value;
 
@@ -36,17 +35,27 @@ pub(super) fn of_inputs(survey: &Survey, origin: impl Fn(&Parameter) -> &'static
 fn line(input: &InputValues, origin: impl Fn(&Parameter) -> &'static str) -> SheetLine {
     let parameter = input.parameter;
     SheetLine {
-        symbol: symbols::of(parameter.name),
-        name: parameter.description().to_owned(),
-        value: values(&input.values, parameter.unit().unwrap_or_default()),
+        symbol: parameter.symbol,
+        name: parameter.meaning.to_owned(),
+        value: values(&input.values, parameter.unit),
         key: parameter.name,
         origin: origin(parameter),
         varies: input.values.len() > 1,
     }
 }
 
-/// The values of an input as people write them: `0.5 GPa`, `0.2, 0.4`, `6 values, 0.1 … 0.6`.
-pub(super) fn values(values: &[Value], unit: &str) -> String {
+/// The values of the input of that name in the jobs, as people write them.
+pub(super) fn of(survey: &Survey, name: &str) -> String {
+    values(survey.values(name), Parameter::named(name).unit)
+}
+
+/// The same with the symbol of the input: `R = 91.4 mm`.
+pub(super) fn assignment(survey: &Survey, name: &str) -> String {
+    format!("{} = {}", Parameter::named(name).symbol, of(survey, name))
+}
+
+/// Values of an input as people write them: `0.5 GPa`, `0.2, 0.4`, `6 values, 0.1 … 0.6`.
+fn values(values: &[Value], unit: &str) -> String {
     let numbers: Option<Vec<f64>> = values.iter().map(Value::as_f64).collect();
     let Some(mut numbers) = numbers else {
         let words: Vec<String> = values.iter().map(word).collect();
@@ -93,12 +102,16 @@ pub(super) fn range(low: f64, high: f64, unit: &str) -> String {
     with_unit(&format!("{} … {}", significant(low / factor, 4), significant(high / factor, 4)), name)
 }
 
-/// A figure of the records: its symbol, what it is, its unit, and its value.
-type FoundFigure = (&'static str, &'static str, &'static str, fn(&JobRecord) -> f64);
+/// What the runs found, and its words beside the inputs.
+static OF_RUNS: [(&ExportColumn, &str); 3] = [
+    (column("time_step_s"), "time step that was used"),
+    (column("time_step_limit_s"), "largest stable time step"),
+    (column("clamp_width_on_mesh_m"), "width of the clamp on the mesh"),
+];
 
 /// The derived quantities: those that follow from the inputs, and those that the runs found.
 pub(super) fn of_derived(survey: &Survey, rows: &[JobRow]) -> SheetGroup {
-    let line = |symbol, name: &str, [low, high]: [f64; 2], unit| SheetLine {
+    let line = |symbol, name: &str, [low, high]: [f64; 2], unit: &str| SheetLine {
         symbol,
         name: name.to_owned(),
         value: range(low, high, unit),
@@ -107,19 +120,15 @@ pub(super) fn of_derived(survey: &Survey, rows: &[JobRow]) -> SheetGroup {
     };
     let of_inputs =
         survey.derived.iter().map(|(found, ends)| line(found.symbol, found.name, *ends, found.unit));
-    let records = || rows.iter().filter_map(JobRow::record);
-    let of_runs: [FoundFigure; 3] = [
-        ("Δt", "time step that was used", "s", |record| record.time_step_s),
-        ("", "largest stable time step", "s", |record| record.time_step_limit_s),
-        ("", "width of the clamp on the mesh", "m", |record| record.clamp_width_m),
-    ];
-    let of_runs = of_runs.into_iter().filter_map(|(symbol, name, unit, figure)| {
-        let (low, high) = records()
-            .map(figure)
+    let of_runs = OF_RUNS.iter().filter_map(|(figure, words)| {
+        let (low, high) = rows
+            .iter()
+            .filter(|row| row.record().is_some())
+            .filter_map(|row| figure.value(row).as_f64())
             // Modes without a run have no time step.
             .filter(|x| *x > 0.0)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        (low <= high).then(|| line(symbol, name, [low, high], unit))
+        (low <= high).then(|| line(figure.symbol(), words, [low, high], &figure.column.head.unit))
     });
     SheetGroup { heading: "What follows from them", lines: of_inputs.chain(of_runs).collect() }
 }

@@ -11,7 +11,6 @@ mod lines;
 mod pin;
 mod surface;
 mod survey;
-mod symbols;
 mod track;
 mod view;
 

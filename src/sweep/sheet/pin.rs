@@ -153,28 +153,28 @@ fn draw_load(svg: &mut Svg, view: &View, [x, y, h]: [f64; 3], survey: &Survey) {
         svg.arrow(&[(tip.0, tip.1 - LOAD_ARROW), tip], Pen::solid(BLUE, 2.2));
     }
     let (at_x, at_y) = view.at([0.0, 0.0, h]);
-    let text = format!("F = {}", lines::values(survey.values("load_n"), "N"));
+    let text = lines::assignment(survey, "load_n");
     svg.text((at_x, (at_y - LOAD_ARROW - 34.0).max(14.0)), Anchor::Middle, BLUE, &text);
 }
 
 fn draw_dimensions(svg: &mut Svg, view: &View, [x, y, h]: [f64; 3], shape: Shape, survey: &Survey) {
-    let text = |symbol: &str, name: &str| format!("{symbol} = {}", lines::values(survey.values(name), "m"));
+    let text = |name| lines::assignment(survey, name);
     // Dimensions are so many pixels away from their edges, whatever the size of the pin.
     let away = |px: f64| px / view.scale;
     let (near, side) = (-y - away(20.0), x + away(20.0));
     let (from, to) = (view.at([-x, near, 0.0]), view.at([x, near, 0.0]));
     let beside = (f64::midpoint(from.0, to.0) - 12.0, f64::midpoint(from.1, to.1) + 12.0);
-    let (symbol, name) = if shape == Shape::Cylinder { ("d", "diameter_m") } else { ("l_x", "size_x_m") };
-    svg.dimension(from, to, INK, &text(symbol, name), (beside, Anchor::End));
+    let name = if shape == Shape::Cylinder { "diameter_m" } else { "size_x_m" };
+    svg.dimension(from, to, INK, &text(name), (beside, Anchor::End));
     if shape != Shape::Cylinder {
         let (from, to) = (view.at([side, -y, 0.0]), view.at([side, y, 0.0]));
         let below = (f64::midpoint(from.0, to.0) + 8.0, f64::midpoint(from.1, to.1) + 12.0);
-        svg.dimension(from, to, INK, &text("l_y", "size_y_m"), (below, Anchor::Start));
+        svg.dimension(from, to, INK, &text("size_y_m"), (below, Anchor::Start));
     }
     let (from, to) = (view.at([-x, -y, 0.0]), view.at([-x, -y, h]));
     let (from, to) = ((from.0 - 16.0, from.1), (to.0 - 16.0, to.1));
     let left = (from.0 - 8.0, f64::midpoint(from.1, to.1));
-    svg.dimension(from, to, INK, &text("h", "size_z_m"), (left, Anchor::End));
+    svg.dimension(from, to, INK, &text("size_z_m"), (left, Anchor::End));
     let leading = view.at([0.0, -y, 0.45 * h]);
     svg.text(leading, Anchor::Middle, INK, "leading end");
 }
@@ -206,7 +206,7 @@ fn caption(spec: &JobSpec, survey: &Survey) -> String {
         (Some([.., group]), _) => format!("the nodes of the group {group} are held in x and y"),
         (None, ClampSide::WholeTop) => "the whole top face is held in x and y".to_owned(),
         (None, side) => {
-            let width = lines::values(survey.values("clamp_width_m"), "m");
+            let width = lines::of(survey, "clamp_width_m");
             format!("a strip of {width} at the {} of the top face is held in x and y", name(side))
         }
     };

@@ -54,7 +54,8 @@ impl Survey {
 
     /// The values of an input by name; none if no job has it.
     pub fn values(&self, name: &str) -> &[Value] {
-        let found = self.inputs.iter().find(|input| input.parameter.name == name);
+        let parameter = Parameter::named(name);
+        let found = self.inputs.iter().find(|input| input.parameter == parameter);
         found.map_or(&[], |input| &input.values)
     }
 

@@ -49,7 +49,7 @@ pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
         svg.polygon(&footprint, (PIN, 1.0), Some(Pen::solid(INK, 1.6)));
     }
 
-    let radius = format!("R = {}", lines::values(survey.values("track_radius_m"), "m"));
+    let radius = lines::assignment(survey, "track_radius_m");
     let beside = ((CENTRE.0 + at.0) / 2.0, CENTRE.1 - 13.0);
     svg.dimension(CENTRE, (at.0 - half[0], at.1), INK, &radius, (beside, Anchor::Middle));
     svg.circle(CENTRE, 3.5, Some(INK), Some(Pen::solid(INK, 1.0)));
@@ -65,8 +65,7 @@ pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
     draw_axes(&mut svg);
     let below = f64::from(SIZE.1);
     let speed = survey.derived.iter().find(|(derived, _)| derived.name == SLIDING_SPEED);
-    let omega = lines::values(survey.values("omega_rpm"), "rpm");
-    svg.text((90.0, below - 44.0), Anchor::Start, BLUE, &format!("ω = {omega}"));
+    svg.text((90.0, below - 44.0), Anchor::Start, BLUE, &lines::assignment(survey, "omega_rpm"));
     if let Some((_, [low, high])) = speed {
         let speed = format!("V = ωR = {}", lines::range(*low, *high, "m/s"));
         svg.text((90.0, below - 22.0), Anchor::Start, BLUE, &speed);
@@ -86,7 +85,7 @@ fn caption(spec: &JobSpec, survey: &Survey) -> String {
     let ring = match spec.scene.disk.kind {
         DiskKind::Rigid => "The disk is a rigid plane, which has no edge.".to_owned(),
         DiskKind::Elastic => {
-            let radius = |name| lines::values(survey.values(name), "m");
+            let radius = |name| lines::of(survey, name);
             format!(
                 "The disk is an elastic ring from r = {} to r = {}, {} thick.",
                 radius("disk_inner_radius_m"),

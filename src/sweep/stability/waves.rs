@@ -60,26 +60,12 @@ fn between(low: (f64, f64), high: (f64, f64), is_mu: bool) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::{AboveBand, ComplexMode, SlidingStability};
+    use crate::analysis::SlidingStability;
 
     fn point(mu: f64, rate: f64) -> StabilityPoint {
-        let mode = ComplexMode {
-            frequency_hz: 15.0e3,
-            growth_rate_per_s: rate,
-            damping_ratio: -rate / 1.0e5,
-            residual: 1.0e-10,
-            is_converged: true,
-        };
-        let stability = SlidingStability {
-            decided: true,
-            contact_nodes: 20,
-            lifted_nodes: 0,
-            mu_star: mu,
-            band_hz: 5.0e4,
-            above_band: AboveBand::NotLookedAt,
-            damped_above_hz: None,
-            modes: vec![mode],
-        };
+        let mut stability = SlidingStability { mu_star: mu, ..SlidingStability::example() };
+        let mode = &mut stability.modes[0];
+        (mode.growth_rate_per_s, mode.damping_ratio) = (rate, -rate / 1.0e5);
         StabilityPoint { omega_rpm: 7.0, mu, parameters: Vec::new(), on_grid: true, stability }
     }
 
