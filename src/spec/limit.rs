@@ -214,6 +214,8 @@ pub static LIMITS: &[Limit] = &[
     between("damping.ratio", At(0.0), Beyond(1.0), "a fraction of critical damping, 0 <= ratio < 1"),
     between("damping.loss_factor", At(0.0), Beyond(2.0), "twice a damping ratio, 0 <= loss_factor < 2"),
     between("damping.frequency_hz", Beyond(0.0), Open, "a frequency > 0 Hz"),
+    between("damping.beta2", At(0.5), At(1.0), "0.5 <= β₂ <= 1 (0.5 has no damping)"),
+    between("damping.at_time_step_s", Beyond(0.0), Open, "a time step > 0 s"),
     between("detection.decay_observation_s", Beyond(0.0), Open, "a duration > 0 s"),
 ];
 

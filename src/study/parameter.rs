@@ -150,6 +150,8 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("damping_ratio", "/damping/ratio", Kind::Number, "damping ratio ζ at damping_frequency_hz, instead of beta_r_s"),
     parameter("loss_factor", "/damping/loss_factor", Kind::Number, "loss factor η = 2ζ at damping_frequency_hz, instead of beta_r_s"),
     parameter("damping_frequency_hz", "/damping/frequency_hz", Kind::Number, "frequency at which damping_ratio or loss_factor holds"),
+    parameter("damping_beta2", "/damping/beta2", Kind::Number, "β₂ of a scheme that has the job's damping at damping_at_time_step_s, instead of beta_r_s"),
+    parameter("damping_at_time_step_s", "/damping/at_time_step_s", Kind::Number, "time step at which the scheme of damping_beta2 has the job's damping"),
     parameter("safety_factor", "/numerics/safety_factor", Kind::Number, "time step as a fraction of the stability limit"),
     parameter("time_step_s", "/numerics/time_step_s", Kind::Number, "time step, instead of safety_factor").symbol("Δt"),
     parameter("precision", "/numerics/precision", PRECISION, "precision of the run's numbers, on a rigid disk"),
@@ -268,10 +270,19 @@ impl Parameter {
     pub(super) fn displaces(&self) -> impl Iterator<Item = &'static Self> {
         let names: &[&str] = match self.name {
             "preset" => Preset::COVERS,
-            "damping_ratio" => &["loss_factor", "beta_r_s"],
-            "loss_factor" => &["damping_ratio", "beta_r_s"],
-            "damping_frequency_hz" => &["beta_r_s"],
-            "beta_r_s" => &["damping_ratio", "loss_factor", "damping_frequency_hz"],
+            "damping_ratio" => &["loss_factor", "damping_beta2", "damping_at_time_step_s", "beta_r_s"],
+            "loss_factor" => &["damping_ratio", "damping_beta2", "damping_at_time_step_s", "beta_r_s"],
+            "damping_frequency_hz" => &["damping_beta2", "damping_at_time_step_s", "beta_r_s"],
+            "damping_beta2" | "damping_at_time_step_s" => {
+                &["damping_ratio", "loss_factor", "damping_frequency_hz", "beta_r_s"]
+            }
+            "beta_r_s" => &[
+                "damping_ratio",
+                "loss_factor",
+                "damping_frequency_hz",
+                "damping_beta2",
+                "damping_at_time_step_s",
+            ],
             "safety_factor" => &["time_step_s"],
             _ => &[],
         };

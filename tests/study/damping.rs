@@ -25,6 +25,23 @@ fn the_ratio_holds_at_its_frequency() {
     }
 }
 
+/// The damping of the β₂ method is β_R = (β₂ − ½) Δt, and the job has only β_R. The tolerance is a rounding.
+#[test]
+fn a_scheme_has_its_damping_at_its_time_step() {
+    for (beta2, time_step_s) in [(1.0, 5.5e-8), (0.6, 5.5e-8), (0.5, 1.0e-7)] {
+        let by_scheme = damped(&format!(r#""beta2": {beta2}, "at_time_step_s": {time_step_s:e}"#));
+        let numerics = &by_scheme.base().numerics;
+        assert!((numerics.beta_r_s - (beta2 - 0.5) * time_step_s).abs() <= 1e-23, "{}", numerics.beta_r_s);
+        assert_eq!((numerics.beta2, numerics.time_step_s), (0.5, None));
+        let explicit = parse(&format!(r#"{{ "numerics": {{ "beta_r_s": {:e} }} }}"#, numerics.beta_r_s));
+        assert_eq!(job_key(by_scheme.base(), "1"), job_key(explicit.base(), "1"));
+    }
+    let varied =
+        parse(r#"{ "damping": { "at_time_step_s": 5.5e-8 }, "grid": { "damping_beta2": [0.5, 1] } }"#);
+    let found: Vec<f64> = varied.expand("1").unwrap().iter().map(|job| job.spec.numerics.beta_r_s).collect();
+    assert_eq!(found, [0.0, 0.5 * 5.5e-8]);
+}
+
 #[test]
 fn damping_can_be_varied() {
     let study = parse(
@@ -58,6 +75,19 @@ fn contradictions_and_gaps_are_refused() {
         ),
         (r#"{ "damping": { "ratio": 0.02 } }"#, "1:25: damping.ratio = 0.02: expected the frequency too"),
         (r#"{ "damping": {} }"#, "1:14: damping = {}: expected a ratio or a loss_factor"),
+        (r#"{ "damping": { "beta2": 1 } }"#, "1:25: damping.beta2 = 1: expected the time step too"),
+        (
+            r#"{ "damping": { "at_time_step_s": 5e-8 } }"#,
+            "damping.at_time_step_s = 0.00000005: expected the scheme's β₂ too",
+        ),
+        (
+            r#"{ "damping": { "beta2": 1.5, "at_time_step_s": 5e-8 } }"#,
+            "damping.beta2 = 1.5: expected 0.5 <= β₂ <= 1",
+        ),
+        (
+            r#"{ "damping": { "ratio": 0.02, "frequency_hz": 15000, "beta2": 1 } }"#,
+            "damping.ratio = 0.02: expected either this with what belongs to it, or beta2",
+        ),
         (
             r#"{ "damping": { "ratio": 2, "frequency_hz": 1 } }"#,
             "1:25: damping.ratio = 2: expected a fraction of critical",

@@ -14,6 +14,7 @@ mod clamped_bar;
 mod clocks;
 mod common;
 mod cycle_identities;
+mod dissipation;
 mod elastic;
 mod energy;
 mod evidence;
