@@ -13,7 +13,7 @@ fn pareto_prints_a_table_and_writes_files() {
     folder.ok("run mine.json");
     let comparison = folder.command("pareto mine.json").assert().code(0);
     let table = stdout(&comparison);
-    assert!(table.contains("Reference: 6×8×6") && table.contains("| elements |"), "{table}");
+    assert!(table.contains("Reference: 6 × 8 × 6") && table.contains("| elements |"), "{table}");
     assert!(stderr(&comparison).contains("reports/mine"), "{}", stderr(&comparison));
     let page = folder.read("reports/mine/pareto.md");
     assert!(table.lines().filter(|line| line.starts_with('|')).all(|line| page.contains(line)), "{page}");

@@ -268,7 +268,12 @@ fn an_unreadable_job() {
     let job = NewJob {
         key: "spoilt".into(),
         payload: "no job".into(),
-        parameters: r#"{"omega_rpm":7.0,"mu":0.4,"grid":[]}"#.into(),
+        parameters: json!({ "omega_rpm": 7.0, "mu": 0.4, "grid": [], "numerics": {
+            "case": "c", "elements": [1, 1, 1], "element_size_m": 0.01, "nodes": 8, "beta2": 0.5, "beta_r_s": 5e-8,
+            "safety_factor": 0.9, "limit_s": 0.01, "stop_early": true, "average_last_fraction": 0.5, "cycles": 20,
+            "tolerance": 0.01, "drift_tolerance": 0.001, "precision": "double", "start": "rest",
+        } })
+        .to_string(),
         cost: 1.0,
         batch: String::new(),
         priority: None,
