@@ -141,7 +141,8 @@ fn study_json(name: &str, counts: Counts, outlook: Option<&Outlook>, trouble: &T
 }
 
 fn parameters(row: &JobRow) -> String {
-    let list: Vec<String> = row.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let list: Vec<String> =
+        row.parameters.of_grid().iter().map(|(name, value)| format!("{name} = {value}")).collect();
     list.join(", ")
 }
 

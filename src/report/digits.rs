@@ -40,6 +40,7 @@ pub(super) fn with_error(scalar: &Scalar, row: &JobRow) -> String {
 /// μ\*/μ of a job, with three decimals at most.
 pub(super) fn ratio(row: &JobRow) -> String {
     let Some(mu_star) = MU_STAR.value(row) else { return MISSING.to_owned() };
-    let (_, place) = error_and_place(MU_STAR, row, mu_star, row.mu);
-    at_place(mu_star / row.mu, place.max(MU_STAR.digits().unmeasured.place(mu_star)))
+    let mu = row.parameters.mu();
+    let (_, place) = error_and_place(MU_STAR, row, mu_star, mu);
+    at_place(mu_star / mu, place.max(MU_STAR.digits().unmeasured.place(mu_star)))
 }

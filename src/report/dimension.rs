@@ -1,6 +1,6 @@
 //! How the values of one parameter are written and drawn: its unit, the labels of its values, its axis.
 
-use super::parameters::{self, MU, OMEGA, SOURCE, with_unit};
+use super::parameters::{self, MU, OMEGA, SOURCE, symbol, with_unit};
 use super::row::JobRow;
 use crate::publish::chart::Axis;
 use crate::publish::value;
@@ -48,16 +48,15 @@ impl Dimension {
             let label = if value.is_number() { texts.next() } else { None };
             labels.insert(value::text(value), label.unwrap_or_else(|| value::text(value)));
         }
-        let (title, symbol) = match name {
-            OMEGA => ("disk speed ω", "ω"),
-            MU => ("local friction coefficient μ", "μ"),
-            SOURCE => ("source", "source"),
-            _ => (description.unwrap_or(short_name), short_name),
+        let title = match name {
+            OMEGA => "disk speed ω",
+            MU => "local friction coefficient μ",
+            _ => description.unwrap_or(short_name),
         };
         let bracketed = |words: &str| {
             if unit.is_empty() { words.to_owned() } else { format!("{words} [{unit}]") }
         };
-        let (title, label) = (bracketed(title), bracketed(symbol));
+        let (title, label) = (bracketed(title), bracketed(symbol(name).unwrap_or(short_name)));
         Self { name: name.to_owned(), title, label, values, factor, unit, labels, is_log }
     }
 
@@ -71,9 +70,7 @@ impl Dimension {
         match self.name.as_str() {
             _ if value.is_null() => parameters::assignment(&self.name, value),
             SOURCE => self.text(value),
-            OMEGA => format!("ω = {}", self.with_unit(value)),
-            MU => format!("μ = {}", self.with_unit(value)),
-            name => format!("{} = {}", name_and_unit(name).0, self.with_unit(value)),
+            _ => format!("{} = {}", self.symbol(), self.with_unit(value)),
         }
     }
 

@@ -1,10 +1,9 @@
 //! One line per job, for other programs: CSV and JSON lines with the same fields.
 
 use super::columns::{ExportColumn, of_parameters, plain, selected};
-use super::parameters::is_further;
+use super::parameters::parameter_names;
 use super::row::JobRow;
 use crate::publish::table::{Column, Format, Head, Table, TableWriter};
-use serde_json::Value;
 use std::borrow::Cow;
 use std::io::{self, Write};
 
@@ -27,7 +26,7 @@ pub fn write<W: Write>(rows: &[JobRow], format: Format, out: W) -> io::Result<()
 }
 
 fn plain_of(rows: &[JobRow]) -> Vec<ExportColumn> {
-    plain(&further_names(rows).into_iter().map(str::to_owned).collect::<Vec<_>>())
+    plain(&parameter_names(rows.iter().map(|row| &row.parameters)))
 }
 
 fn columns_of(columns: impl IntoIterator<Item = ExportColumn>) -> Vec<Column<JobRow>> {
@@ -69,34 +68,13 @@ impl<W: Write> Export<W> {
 }
 
 /// The data behind a figure: for each of the rows its key, ω, μ, the given `columns` of the export, the status,
-/// and the further parameters that vary.
+/// and the other `parameters`.
 pub(super) fn selection<'a>(
     stem: impl Into<Cow<'static, str>>,
     rows: impl IntoIterator<Item = &'a JobRow>,
-    further: &[&str],
+    parameters: &[&str],
     columns: &[&'static ExportColumn],
 ) -> Table {
-    let selected = selected(columns).cloned().chain(of_parameters(further.iter().copied()));
+    let selected = selected(columns).cloned().chain(of_parameters(parameters));
     Table::of(stem, &columns_of(selected), rows)
-}
-
-/// Names of the parameters other than ω and μ, in the order in which they first appear.
-pub(super) fn further_names<'a>(rows: impl IntoIterator<Item = &'a JobRow>) -> Vec<&'a str> {
-    let mut names = Vec::new();
-    for row in rows {
-        add_further_names(&mut names, &row.parameters);
-    }
-    names
-}
-
-/// Adds to `names` the parameters of a job other than ω and μ, each name once.
-pub fn add_further_names<'a, N>(names: &mut Vec<N>, parameters: &'a [(String, Value)])
-where
-    N: AsRef<str> + From<&'a str>,
-{
-    for (name, _) in parameters.iter().filter(|(name, _)| is_further(name)) {
-        if !names.iter().any(|known| known.as_ref() == name) {
-            names.push(N::from(name));
-        }
-    }
 }

@@ -5,8 +5,7 @@
 //! files of measured points), each source has columns of its own.
 
 use super::dimension::Dimension;
-use super::export::further_names;
-use super::parameters::{MU, OMEGA, SOURCE, is_further};
+use super::parameters::{MU, OMEGA, SOURCE, parameter_names};
 use super::row::{JobRow, RowState};
 use super::view::View;
 use crate::publish::chart::Axis;
@@ -36,7 +35,7 @@ pub(super) struct Layout<'a> {
     pub groups: Vec<Group<'a>>,
     /// Parameters that vary freely in the only group, because the jobs are points and no grid. Points are not joined by lines then.
     pub scattered: Vec<&'a str>,
-    /// The parameters other than ω and μ that vary or have a place in the layout, in the order of the study: tables of points have them.
+    /// The parameters that vary, and then those that are constant and have a place in the layout: tables of points have them.
     pub varied: Vec<&'a str>,
     dimensions: HashMap<&'a str, Dimension>,
 }
@@ -97,8 +96,8 @@ impl<'a> Varying<'a> {
             let first = texts.next();
             texts.any(|text| Some(text) != first)
         };
-        let all = [OMEGA, MU].into_iter().chain(further_names(rows.iter().copied()));
-        let (names, constant) = all.partition(|name| varies(name));
+        let all = parameter_names(rows.iter().map(|row| &row.parameters));
+        let (names, constant) = all.into_iter().partition(|name| varies(name));
         let mut sources: Vec<Source> = Vec::new();
         for row in &rows {
             if !sources.iter().rev().any(|source| source.name == row.study) {
@@ -130,13 +129,12 @@ impl<'a> Varying<'a> {
 
     /// The parameter along the axis.
     fn axis(&self) -> &'a str {
-        let further = self.names.iter().find(|name| **name != OMEGA && **name != MU);
-        if self.varies(OMEGA) { OMEGA } else { further.copied().unwrap_or(OMEGA) }
+        self.names.iter().copied().find(|name| *name != MU).unwrap_or(OMEGA)
     }
 
     /// The parameter of the curves.
     fn by(&self, axis: &str) -> &'a str {
-        let varying = [MU, OMEGA].into_iter().chain(self.names.iter().copied()).chain([SOURCE]);
+        let varying = [MU].into_iter().chain(self.names.iter().copied()).chain([SOURCE]);
         let usual = if axis == MU { OMEGA } else { MU };
         varying.into_iter().find(|name| *name != axis && self.varies(name)).unwrap_or(usual)
     }
@@ -195,8 +193,7 @@ impl<'a> Layout<'a> {
             })
             .collect();
         let varied = varying.names.iter().chain(&constant).copied();
-        let varied = varied.filter(|name| is_further(name) && (varying.varies(name) || is_placed(name)));
-        let varied = varied.collect();
+        let varied = varied.filter(|name| varying.varies(name) || is_placed(name)).collect();
         let (series, series_of) = series(&varying, by);
         let mut layout = Self {
             axis,

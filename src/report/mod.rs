@@ -62,6 +62,7 @@ pub use inspections::{FoundInspection, INSPECTIONS, inspections};
 pub use measurement::{MeasuredValue, Measurement};
 #[cfg(feature = "cli")]
 pub use parameters::assignment;
+pub use parameters::{Parameters, parameter_names};
 pub use program::chart as program_chart;
 pub use provenance::{BuildInfo, Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};

@@ -2,7 +2,7 @@
 
 use super::discretisation::Discretisation;
 use super::measurement::Measurement;
-use super::parameters::{MU, OMEGA, SOURCE, is_further};
+use super::parameters::{Parameters, SOURCE};
 use crate::analysis::{JobRecord, Outcome};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -14,14 +14,8 @@ pub struct JobRow {
     pub study: String,
     /// Key of the job; file and line of a measured point.
     pub job: String,
-    /// The grid parameters by name, in the order of the study. A parameter of a measured point that is not known is null.
-    pub parameters: Vec<(String, Value)>,
-    /// Disk speed ω of the job in revolutions per minute, whether or not it is a parameter of the grid. It is NaN for a
-    /// measured point of unknown speed.
-    pub omega_rpm: f64,
-    /// Local friction coefficient μ of the job, whether or not it is a parameter of the grid. It is NaN for a measured
-    /// point of unknown μ.
-    pub mu: f64,
+    /// Its parameters.
+    pub parameters: Parameters,
     /// Whether the friction law is known to have no coefficient but μ, so that steady sliding has μ\* = μ.
     pub has_one_mu: bool,
     /// The state of the job.
@@ -167,21 +161,11 @@ impl JobRow {
         }
     }
 
-    /// The parameters other than ω and μ.
-    pub(super) fn further(&self) -> impl Iterator<Item = (&str, &Value)> {
-        self.parameters
-            .iter()
-            .map(|(name, value)| (name.as_str(), value))
-            .filter(|(name, _)| is_further(name))
-    }
-
-    /// The value of a parameter; null where this job has none of that name.
+    /// The value of a parameter or the source; null where this job has no parameter of that name.
     pub(super) fn parameter(&self, name: &str) -> Value {
-        match name {
-            OMEGA => self.omega_rpm.into(),
-            MU => self.mu.into(),
-            SOURCE => self.study.as_str().into(),
-            _ => self.further().find(|(own, _)| *own == name).map_or(Value::Null, |(_, value)| value.clone()),
+        if name == SOURCE {
+            return self.study.as_str().into();
         }
+        self.parameters.get(name).cloned().unwrap_or_default()
     }
 }

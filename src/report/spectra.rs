@@ -59,8 +59,10 @@ struct Line<'a> {
 fn columns<'a>() -> [Column<Line<'a>>; 5] {
     [
         Column::new("job", "", "key of the job", |of| of.row.job.as_str().into()),
-        Column::new("omega_rpm", "rpm", "rotation speed ω of the disk", |of| of.row.omega_rpm.into()),
-        Column::new("mu", "", "local friction coefficient μ", |of| of.row.mu.into()),
+        Column::new("omega_rpm", "rpm", "rotation speed ω of the disk", |of| {
+            of.row.parameters.omega_rpm().into()
+        }),
+        Column::new("mu", "", "local friction coefficient μ", |of| of.row.parameters.mu().into()),
         Column::new("frequency_hz", "Hz", "frequency of the line", |of| of.frequency_hz.into()),
         Column::new("normal_amplitude_n", "N", "amplitude of N at it", |of| of.amplitude_n.into()),
     ]
@@ -72,8 +74,10 @@ pub(super) fn table(layout: &Layout, spectra: &Spectra) -> Table {
         let (head, name) = (parameters::head(name), (*name).to_owned());
         Column::made(head, move |of: &Line| of.row.parameter(&name))
     };
-    let columns: Vec<Column<Line>> =
-        columns().into_iter().chain(layout.varied.iter().map(of_parameter)).collect();
+    let fixed = columns();
+    let further = layout.varied.iter().filter(|name| fixed.iter().all(|own| own.head.name != **name));
+    let further: Vec<Column<Line>> = further.map(of_parameter).collect();
+    let columns: Vec<Column<Line>> = fixed.into_iter().chain(further).collect();
     let jobs = layout.groups.iter().flat_map(|group| &group.jobs).map(|job| job.row);
     let lines = jobs.flat_map(|row| {
         let own = spectra.get(&row.job).map_or(&[][..], |own| &own.lines);

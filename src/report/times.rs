@@ -53,9 +53,7 @@ mod tests {
         JobRow {
             study: String::new(),
             job: String::new(),
-            parameters: Vec::new(),
-            omega_rpm: 1.0,
-            mu: 0.1,
+            parameters: crate::report::Parameters::new(1.0, 0.1, Vec::new()),
             has_one_mu: true,
             state: RowState::Pending,
             wall_s,

@@ -1,8 +1,8 @@
 //! The windows of runs whose speed or load changes in time, as a table.
 
 use super::columns::unlike_results;
-use super::export::further_names;
 use super::layout::parameters_in_words;
+use super::parameters::parameter_names;
 use super::row::JobRow;
 use crate::analysis::program::ProgramWindow;
 use crate::publish::table::{Column, FileColumns, Format, Head, Table, TableWriter};
@@ -35,12 +35,12 @@ fn fixed<'a>() -> Vec<Column<Subject<'a>>> {
         Column::new("stick_share", "", "share of the node-time in stick", |of| of.window.stick_share.into()),
         Column::new("slip_share", "", "share of the node-time in slip", |of| of.window.slip_share.into()),
         Column::new("separated_share", "", "share of the node-time separated", |of| of.window.separated_share.into()),
-        Column::new("mu", "", "local friction coefficient μ of the job", |of| of.row.mu.into()),
+        Column::new("mu", "", "local friction coefficient μ of the job", |of| of.row.parameters.mu().into()),
     ]
 }
 
-/// The columns of jobs with these parameters other than ω and μ. A parameter that the window has, such as the load, is in it.
-fn columns<'a, N: AsRef<str>>(further: &[N]) -> Vec<Column<Subject<'a>>> {
+/// The columns of jobs with these parameters. A parameter that the window has, such as the load, is in it.
+fn columns<'a, N: AsRef<str>>(parameters: &[N]) -> Vec<Column<Subject<'a>>> {
     let fixed = fixed();
     let own: Vec<&str> = fixed.iter().map(|column| &*column.head.name).collect();
     let is_new = |name: &&N| !own.contains(&name.as_ref());
@@ -49,8 +49,8 @@ fn columns<'a, N: AsRef<str>>(further: &[N]) -> Vec<Column<Subject<'a>>> {
         let head = Head::new(unlike_results(&name), "", "the grid parameter of that name");
         Column::made(head, move |of: &Subject| of.row.parameter(&name))
     };
-    let parameters: Vec<_> = further.iter().filter(is_new).map(of_parameter).collect();
-    fixed.into_iter().chain(parameters).collect()
+    let further: Vec<_> = parameters.iter().filter(is_new).map(of_parameter).collect();
+    fixed.into_iter().chain(further).collect()
 }
 
 fn of_row(row: &JobRow) -> impl Iterator<Item = Subject<'_>> {
@@ -61,8 +61,8 @@ fn of_row(row: &JobRow) -> impl Iterator<Item = Subject<'_>> {
 /// A line for each window of each job.
 pub(super) fn table(rows: &[JobRow]) -> Table {
     let subjects: Vec<Subject> = rows.iter().flat_map(of_row).collect();
-    let further = further_names(subjects.iter().map(|of| of.row));
-    Table::of("windows", &columns(&further), &subjects)
+    let parameters = parameter_names(subjects.iter().map(|of| &of.row.parameters));
+    Table::of("windows", &columns(&parameters), &subjects)
 }
 
 /// The columns, for the page of columns.
@@ -76,18 +76,18 @@ pub(super) fn described() -> FileColumns {
 
 /// All windows as CSV, job by job.
 pub struct Windows<W: Write> {
-    further: Vec<String>,
+    parameters: Vec<String>,
     lines: TableWriter<W>,
 }
 
 impl<W: Write> Windows<W> {
-    /// Writes the header for jobs with these parameters other than ω and μ.
+    /// Writes the header for jobs with these parameters.
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn new(further: &[String], out: W) -> io::Result<Self> {
-        let heads: Vec<Head> = columns(further).into_iter().map(|column| column.head).collect();
-        Ok(Self { further: further.to_vec(), lines: TableWriter::new(Format::Csv, &heads, out)? })
+    pub fn new(parameters: &[String], out: W) -> io::Result<Self> {
+        let heads: Vec<Head> = columns(parameters).into_iter().map(|column| column.head).collect();
+        Ok(Self { parameters: parameters.to_vec(), lines: TableWriter::new(Format::Csv, &heads, out)? })
     }
 
     /// Writes the windows of a job.
@@ -98,7 +98,7 @@ impl<W: Write> Windows<W> {
         if row.record().is_none_or(|record| record.windows.is_empty()) {
             return Ok(());
         }
-        let columns = columns(&self.further);
+        let columns = columns(&self.parameters);
         of_row(row).try_for_each(|of| self.lines.line(columns.iter().map(|column| column.value(&of))))
     }
 

@@ -1,7 +1,7 @@
 //! Reading all that a database has: results, specifications, final motions and checkpoints.
 
 use super::error::SweepError;
-use super::rows::{RowParameters, read_record, report_row};
+use super::rows::{StoredParameters, read_record, report_row};
 use super::work::job_key;
 use crate::queue::{Finding, Integrity, Queue, Rows, StudyRow};
 use crate::spec::JobSpec;
@@ -150,7 +150,7 @@ async fn parameters(queue: &mut Queue) -> Found {
         queue
             .each_parameters(&study.name, |text| {
                 read += 1;
-                wrong += u64::from(serde_json::from_str::<RowParameters>(text).is_err());
+                wrong += u64::from(serde_json::from_str::<StoredParameters>(text).is_err());
             })
             .await?;
         if wrong > 0 {

@@ -1,13 +1,14 @@
 //! One row per job, for other programs.
 
 use super::error::SweepError;
-use super::rows::{add_further_names, for_each_row, for_each_row_with_inputs};
+use super::rows::{add_names, for_each_row, for_each_row_with_inputs};
 use crate::publish::table::{Format, Head};
 use crate::queue::{Queue, Rows};
 use crate::report::columns::{self, ExportColumn};
 use crate::report::export::Export;
 use crate::report::{JobRow, Windows};
 use crate::study::{Parameter, input_parameters};
+use indexmap::IndexSet;
 use std::io::Write;
 
 /// The columns of an export.
@@ -53,8 +54,8 @@ pub async fn export_windows(
     out: &mut dyn Write,
 ) -> Result<Unreadable, SweepError> {
     let mut unreadable = Unreadable::default();
-    let further = further_names(queue, studies).await?;
-    let mut windows = Windows::new(&further, out).map_err(SweepError::Output)?;
+    let grid = grid_names(queue, studies).await?;
+    let mut windows = Windows::new(&grid, out).map_err(SweepError::Output)?;
     for study in studies {
         for_each_row(queue, study, Rows::All, |_, row| {
             unreadable.note(&row);
@@ -66,7 +67,7 @@ pub async fn export_windows(
     Ok(unreadable)
 }
 
-/// The columns of an export of studies with these `grid` parameters other than ω and μ.
+/// The columns of an export of studies with these `grid` parameters.
 pub fn columns(which: ExportColumns, grid: &[String]) -> Vec<ExportColumn> {
     match which {
         ExportColumns::Plain => columns::plain(grid),
@@ -84,13 +85,13 @@ fn input_columns() -> Vec<Head> {
     input_parameters().map(head).collect()
 }
 
-/// The parameters of the studies other than ω and μ.
-async fn further_names(queue: &mut Queue, studies: &[String]) -> Result<Vec<String>, SweepError> {
-    let mut names = Vec::new();
+/// The grid parameters of the studies.
+async fn grid_names(queue: &mut Queue, studies: &[String]) -> Result<Vec<String>, SweepError> {
+    let mut names = IndexSet::new();
     for study in studies {
-        add_further_names(queue, study, &mut names).await?;
+        add_names(queue, study, &mut names).await?;
     }
-    Ok(names)
+    Ok(names.into_iter().collect())
 }
 
 /// Writes one row per job of the studies to `out`, study after study. Each study is read twice, first for the names of its
@@ -108,7 +109,7 @@ pub async fn export(
     out: &mut dyn Write,
 ) -> Result<Unreadable, SweepError> {
     let mut unreadable = Unreadable::default();
-    let grid = further_names(queue, studies).await?;
+    let grid = grid_names(queue, studies).await?;
     let mut export = Export::new(format, columns(which, &grid), out).map_err(SweepError::Output)?;
     let mut write = |row: JobRow| {
         unreadable.note(&row);

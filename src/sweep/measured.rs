@@ -2,7 +2,7 @@
 
 use crate::report::columns::ExportColumn;
 use crate::report::{
-    Discretisation, FREQUENCY, JobRow, MeasuredValue, Measurement, RowState, SCALARS, Scalar,
+    Discretisation, FREQUENCY, JobRow, MeasuredValue, Measurement, Parameters, RowState, SCALARS, Scalar,
 };
 use crate::study::{PARAMETERS, Parameter, misspelt_name, read_text};
 use crate::units::name_and_unit;
@@ -251,7 +251,6 @@ fn row(
     let mut parameters: Vec<(String, Value)> = Vec::new();
     let mut values: Vec<MeasuredValue> = Vec::new();
     let mut errors: Vec<(&str, f64)> = Vec::new();
-    let (mut omega_rpm, mut mu) = (f64::NAN, f64::NAN);
     let mut squeals = None;
     for ((column, name), text) in columns.iter().zip(header).zip(record) {
         let number = || number(text, place).map_err(|message| place.error(Some(name), message));
@@ -260,17 +259,16 @@ fn row(
         };
         match column {
             Column::Ignored | Column::Unknown => {}
-            Column::Parameter(parameter) if text.is_empty() => {
-                if !matches!(parameter.name, "omega_rpm" | "mu") {
-                    parameters.push((name.to_owned(), Value::Null));
-                }
+            Column::Parameter(parameter) => {
+                let value = match parameter.name {
+                    _ if text.is_empty() => Value::Null,
+                    "omega_rpm" => number().and_then(|x| require(x > 0.0, x, "a number > 0"))?.into(),
+                    "mu" => number().and_then(|x| require(x >= 0.0, x, "a number >= 0"))?.into(),
+                    _ if parameter.is_number() => number()?.into(),
+                    _ => text.into(),
+                };
+                parameters.push((parameter.name.to_owned(), value));
             }
-            Column::Parameter(parameter) => match parameter.name {
-                "omega_rpm" => omega_rpm = number().and_then(|x| require(x > 0.0, x, "a number > 0"))?,
-                "mu" => mu = number().and_then(|x| require(x >= 0.0, x, "a number >= 0"))?,
-                _ if parameter.is_number() => parameters.push((name.to_owned(), number()?.into())),
-                _ => parameters.push((name.to_owned(), text.into())),
-            },
             _ if text.is_empty() => {}
             Column::Squeals => {
                 squeals = Some(match text.to_ascii_lowercase().as_str() {
@@ -313,9 +311,7 @@ fn row(
     Ok(has_result.then(|| JobRow {
         study: source_name.to_owned(),
         job: format!("{}:{}", place.file, place.line),
-        parameters,
-        omega_rpm,
-        mu,
+        parameters: Parameters::new(f64::NAN, f64::NAN, parameters),
         has_one_mu: false,
         state: RowState::Measured(Measurement { values, squeals }),
         wall_s: None,
@@ -356,13 +352,15 @@ mod tests {
         let found = parse(text, "points.csv", "points").unwrap();
         assert_eq!(found.parameters, ["omega_rpm", "mu", "clamp_side"]);
         let [first, second] = found.rows.as_slice() else { panic!("{found:?}") };
-        assert_eq!((first.omega_rpm, first.mu, first.job.as_str()), (7.0, 0.4, "points.csv:4"));
-        assert_eq!(first.parameters, [("clamp_side".to_owned(), "inner_side".into())]);
+        assert_eq!(first.job, "points.csv:4");
+        let own: Vec<_> = first.parameters.iter().map(|(name, value)| (name, value.clone())).collect();
+        assert_eq!(own, [("omega_rpm", 7.0.into()), ("mu", 0.4.into()), ("clamp_side", "inner_side".into())]);
         let value = |name: &str, value, error| MeasuredValue { name: name.to_owned(), value, error };
         let values = vec![value("mu_star", 0.27, Some(0.01)), value("frequency_hz", 15_200.0, Some(50.0))];
         assert_eq!(first.state, RowState::Measured(Measurement { values, squeals: Some(true) }));
-        assert!(second.mu.is_nan() && second.job == "points.csv:8", "{second:?}");
-        assert_eq!(second.parameters, [("clamp_side".to_owned(), Value::Null)]);
+        assert_eq!(second.job, "points.csv:8");
+        assert!(second.parameters.mu().is_nan(), "{second:?}");
+        assert_eq!(second.parameters.get("clamp_side"), Some(&Value::Null));
         for text in [
             "omega_rpm;mu_star\n7;0.3\n",
             "omega_rpm;mu_star\n7;0,3\n",

@@ -59,7 +59,7 @@ pub use plan::{Plan, Submission};
 pub use rename::rename;
 pub use report::{Revision, write_content, write_refreshing_report, write_report, write_stability_report};
 pub use request::{ReportContent, ReportRequest, no_such_quantity, read_report};
-pub use rows::{for_each_row, for_each_row_with_inputs, read_rows};
+pub use rows::{for_each_row, for_each_row_with_inputs, parameters_of, read_rows};
 pub use selection::{
     SelectedJob, StoredJob, StudyOfJob, find_job, row_of_job, select_all, select_by_key, select_by_parameters,
 };

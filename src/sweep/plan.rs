@@ -4,7 +4,7 @@ use super::difference::Difference;
 use super::error::SweepError;
 use super::numerics::numerics;
 use super::request::check_quantities;
-use super::rows::RowParameters;
+use super::rows::StoredParameters;
 use crate::analysis::{Ending, JobError, Workload};
 use crate::publish::value;
 use crate::queue::{NewJob, NewStudy, Queue, Replace, Replaced, Shard, Submitted};
@@ -256,7 +256,7 @@ fn new_job(
     cases: &mut SharedKeys,
     added: Option<(u64, &str)>,
 ) -> Result<NewJob, SweepError> {
-    let parameters = RowParameters {
+    let parameters = StoredParameters {
         omega_rpm: job.spec.scene.disk.omega_rpm,
         mu: job.spec.scene.contact.mu,
         grid: job.parameters.clone(),

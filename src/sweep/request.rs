@@ -8,10 +8,11 @@ use super::selection::values;
 use crate::publish::value;
 use crate::queue::Queue;
 use crate::report::columns::ExportColumn;
-use crate::report::{FREQUENCY, JobRow, MU_STAR, SCALARS, Scalar, View};
+use crate::report::{FREQUENCY, JobRow, MU_STAR, Parameters, SCALARS, Scalar, View, parameter_names};
 use crate::solver;
 use crate::spec::JobSpec;
 use crate::study::{DIRECTION, PARAMETERS, Spacing, Study, StudyError, nearest_name};
+use indexmap::IndexSet;
 use serde_json::Value;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -55,8 +56,6 @@ struct StoredStudy {
     study: Option<Study>,
 }
 
-/// The parameters that every row has besides the grid's.
-const OWN: [&str; 2] = ["omega_rpm", "mu"];
 /// Stands for the study or file of a row among the parameters.
 const SOURCE: &str = "source";
 
@@ -117,12 +116,7 @@ impl ReportRequest {
     fn view(&self, studies: &[StoredStudy], rows: &[JobRow]) -> Result<View, SweepError> {
         let own = studies.iter().find_map(|stored| stored.study.as_ref()).map(Study::report);
         let own = own.cloned().unwrap_or_default();
-        let mut known: Vec<&str> = OWN.to_vec();
-        for (name, _) in rows.iter().flat_map(|row| &row.parameters) {
-            if !known.contains(&name.as_str()) {
-                known.push(name);
-            }
-        }
+        let mut known = parameter_names(rows.iter().map(|row| &row.parameters));
         if self.sources().len() > 1 {
             known.push(SOURCE);
         }
@@ -268,14 +262,9 @@ pub async fn read_report(queue: &mut Queue, request: &ReportRequest) -> Result<R
         of_studies.push(read_rows(queue, study).await?);
     }
     // Every parameter that a grid or a file has is one of all jobs, so that equal points of different sources are found.
-    let mut names: Vec<String> = Vec::new();
-    let in_grids =
-        of_studies.iter().flatten().flat_map(|row| row.parameters.iter().map(|(name, _)| name.as_str()));
-    for name in in_grids.chain(files.iter().flat_map(|file| file.parameters.iter().copied())) {
-        if !OWN.contains(&name) && !names.iter().any(|known| known == name) {
-            names.push(name.to_owned());
-        }
-    }
+    let in_grids = parameter_names(of_studies.iter().flatten().map(|row| &row.parameters));
+    let in_files = files.iter().flat_map(|file| file.parameters.iter().copied());
+    let names: IndexSet<String> = in_grids.into_iter().chain(in_files).map(str::to_owned).collect();
     for (rows, stored) in of_studies.iter_mut().zip(&studies) {
         add_parameters(rows, stored, &names)?;
     }
@@ -291,18 +280,21 @@ pub async fn read_report(queue: &mut Queue, request: &ReportRequest) -> Result<R
 }
 
 /// Gives the rows of a study the parameters that its grid does not have, with the values of the jobs.
-fn add_parameters(rows: &mut [JobRow], stored: &StoredStudy, names: &[String]) -> Result<(), SweepError> {
-    let in_grid = |row: &JobRow, name: &str| row.parameters.iter().any(|(own, _)| own == name);
-    let Some(study) =
-        stored.study.as_ref().filter(|_| rows.iter().any(|row| names.iter().any(|name| !in_grid(row, name))))
-    else {
+fn add_parameters(
+    rows: &mut [JobRow],
+    stored: &StoredStudy,
+    names: &IndexSet<String>,
+) -> Result<(), SweepError> {
+    let is_missing = |row: &JobRow, name: &str| row.parameters.get(name).is_none();
+    let is_incomplete = |row: &JobRow| names.iter().any(|name| is_missing(row, name));
+    let Some(study) = stored.study.as_ref().filter(|_| rows.iter().any(is_incomplete)) else {
         return Ok(());
     };
     let jobs = study.expand(solver::VERSION)?;
     let specs: HashMap<&str, &JobSpec> = jobs.iter().map(|job| (job.key.as_str(), &job.spec)).collect();
     for row in rows {
         let missing: Vec<&str> =
-            names.iter().map(String::as_str).filter(|name| !in_grid(row, name)).collect();
+            names.iter().map(String::as_str).filter(|name| is_missing(row, name)).collect();
         // An older version may have given the job another key; the parameters outside of the grid are those of all jobs.
         let spec = specs.get(row.job.as_str()).copied().unwrap_or_else(|| study.base());
         row.parameters.extend(values(spec, missing.into_iter())?);
@@ -312,41 +304,21 @@ fn add_parameters(rows: &mut [JobRow], stored: &StoredStudy, names: &[String]) -
 
 /// The points of a file with all parameters: what the file does not say is taken from the jobs, if it is the same in all of
 /// them, and otherwise not known.
-fn completed(file: MeasuredFile, jobs: &[JobRow], names: &[String]) -> Vec<JobRow> {
-    let constant = |of: &dyn Fn(&JobRow) -> Value| {
-        let mut all = jobs.iter().map(of);
+fn completed(file: MeasuredFile, jobs: &[JobRow], names: &IndexSet<String>) -> Vec<JobRow> {
+    let constant = |name: &String| {
+        let mut all = jobs.iter().map(|row| row.parameters.get(name).unwrap_or(&Value::Null));
         let first = all.next()?;
-        all.all(|value| value::text(&value) == value::text(&first)).then_some(first)
+        all.all(|value| value::text(value) == value::text(first)).then_some(first)
     };
-    let number = |value: Option<Value>| value.and_then(|value| value.as_f64()).unwrap_or(f64::NAN);
-    let omega_rpm = number(constant(&|row| row.omega_rpm.into()));
-    let mu = number(constant(&|row| row.mu.into()));
-    let usual: Vec<(String, Value)> = names
-        .iter()
-        .map(|name| {
-            let of = |row: &JobRow| {
-                let found = row.parameters.iter().find(|(own, _)| own == name);
-                found.map_or(Value::Null, |(_, value)| value.clone())
-            };
-            (name.clone(), constant(&of).unwrap_or(Value::Null))
-        })
-        .collect();
-    let complete = |mut row: JobRow| {
-        if row.omega_rpm.is_nan() {
-            row.omega_rpm = omega_rpm;
-        }
-        if row.mu.is_nan() {
-            row.mu = mu;
-        }
-        let given = std::mem::take(&mut row.parameters);
-        let known = |name: &str| given.iter().find(|(own, value)| own == name && !value.is_null());
-        row.parameters = usual
-            .iter()
-            .map(|(name, value)| {
-                (name.clone(), known(name).map_or_else(|| value.clone(), |(_, own)| own.clone()))
-            })
-            .collect();
-        row
+    let usual: Vec<(&String, Value)> =
+        names.iter().map(|name| (name, constant(name).cloned().unwrap_or_default())).collect();
+    let complete = |row: JobRow| {
+        let value = |(name, usual): &(&String, Value)| {
+            let given = row.parameters.get(name).filter(|given| !given.is_null());
+            ((*name).clone(), given.unwrap_or(usual).clone())
+        };
+        let parameters = Parameters::new(f64::NAN, f64::NAN, usual.iter().map(value).collect());
+        JobRow { parameters, ..row }
     };
     file.rows.into_iter().map(complete).collect()
 }

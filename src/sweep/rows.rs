@@ -4,20 +4,21 @@ use super::discretisation::MeasuredErrors;
 use super::error::SweepError;
 use crate::analysis::JobRecord;
 use crate::queue::{Integrity, JobState, Queue, Rows, StudyRow};
-use crate::report::{Discretisation, JobNumerics, JobRow, RowState, export};
+use crate::report::{Discretisation, JobNumerics, JobRow, Parameters, RowState};
 use crate::spec::JobSpec;
-use crate::study::{Parameter, input_parameters, inputs};
+use crate::study::{Job, Parameter, input_parameters, inputs};
+use indexmap::IndexSet;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::ops::ControlFlow;
 
-/// The parameters of a job that are stored with its row, so that tables need not read the payload.
+/// What is stored with the row of a job, so that tables need not read the payload.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct RowParameters {
-    /// Disk speed ω of the job in revolutions per minute.
+pub(super) struct StoredParameters {
+    /// Disk speed ω of the job in revolutions per minute, whether or not the grid has it.
     pub omega_rpm: f64,
-    /// Local friction coefficient μ of the job.
+    /// Local friction coefficient μ of the job, whether or not the grid has it.
     pub mu: f64,
     /// The grid parameters, in the study's order.
     pub grid: Vec<(String, Value)>,
@@ -29,6 +30,25 @@ pub(super) struct RowParameters {
     /// Why it was added.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
+}
+
+impl StoredParameters {
+    /// Reads those of a job, which `subject` names in an error.
+    pub fn read(text: &str, subject: impl FnOnce() -> String) -> Result<Self, SweepError> {
+        let unreadable = |reason| SweepError::Unreadable { subject: subject(), what: "parameters", reason };
+        serde_json::from_str(text).map_err(unreadable)
+    }
+
+    /// As they are everywhere but in the database.
+    pub fn into_parameters(self) -> Parameters {
+        Parameters::new(self.omega_rpm, self.mu, self.grid)
+    }
+}
+
+/// The parameters of a job that may not be stored yet.
+pub fn parameters_of(job: &Job) -> Parameters {
+    let scene = &job.spec.scene;
+    Parameters::new(scene.disk.omega_rpm, scene.contact.mu, job.parameters.clone())
 }
 
 /// Reads all rows of a study, in the order of the grid, with what is known about the error of their discretisation.
@@ -147,23 +167,16 @@ fn input_values(spec: &JobSpec) -> Vec<Value> {
     input_parameters().map(value).collect()
 }
 
-/// The grid parameters of a row with their values.
-pub(super) fn grid_parameters(key: &str, parameters: &str) -> Result<Vec<(String, Value)>, SweepError> {
-    let unreadable =
-        |reason| SweepError::Unreadable { subject: format!("job {key}"), what: "parameters", reason };
-    serde_json::from_str::<RowParameters>(parameters).map(|row| row.grid).map_err(unreadable)
-}
-
-/// Adds to `names` a study's parameters other than ω and μ, in the order in which they first appear, each once.
-pub(super) async fn add_further_names(
+/// Adds to `names` those of a study's grid parameters, in the order in which they first appear.
+pub(super) async fn add_names(
     queue: &mut Queue,
     study: &str,
-    names: &mut Vec<String>,
+    names: &mut IndexSet<String>,
 ) -> Result<(), SweepError> {
     // Parameters that cannot be read are an error when their row is converted.
-    let read = queue.each_parameters(study, |parameters| {
-        if let Ok(RowParameters { grid, .. }) = serde_json::from_str(parameters) {
-            export::add_further_names(names, &grid);
+    let read = queue.each_parameters(study, |text| {
+        if let Ok(StoredParameters { grid, .. }) = serde_json::from_str(text) {
+            names.extend(grid.into_iter().map(|(name, _)| name));
         }
     });
     read.await?;
@@ -173,26 +186,19 @@ pub(super) async fn add_further_names(
 /// A row of the queue as a row of a report, without what only the specification says. A result that cannot be read is a state of
 /// the row.
 pub(super) fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepError> {
-    let unreadable = |reason| SweepError::Unreadable {
-        subject: format!("job {} of {study}", row.key),
-        what: "parameters",
-        reason,
-    };
-    let parameters: RowParameters = serde_json::from_str(&row.parameters).map_err(unreadable)?;
+    let mut stored = StoredParameters::read(&row.parameters, || format!("job {} of {study}", row.key))?;
     let state = row_state(row.state, row.record.as_deref(), row.error.as_deref(), row.integrity);
     Ok(JobRow {
         study: study.to_owned(),
         job: row.key.clone(),
-        parameters: parameters.grid,
-        omega_rpm: parameters.omega_rpm,
-        mu: parameters.mu,
+        wave: stored.wave.unwrap_or(0),
+        why: stored.why.take(),
+        numerics: Some(stored.numerics.clone()),
+        parameters: stored.into_parameters(),
         has_one_mu: false,
         state,
         wall_s: row.wall_s,
-        numerics: Some(parameters.numerics),
         discretisation: Discretisation::default(),
-        wave: parameters.wave.unwrap_or(0),
-        why: parameters.why,
         inputs: Vec::new(),
     })
 }

@@ -3,9 +3,9 @@
 use super::database::{open_to_read, study_file, with_open};
 use super::discretisation::discretisation_of;
 use super::error::SweepError;
-use super::rows::{grid_parameters, job_spec, row_state};
+use super::rows::{StoredParameters, job_spec, row_state};
 use crate::queue::{JobDetails, Location, Queue, StudyDocument};
-use crate::report::{JobRow, RowState};
+use crate::report::{JobRow, Parameters, RowState};
 use crate::solver;
 use crate::spec::JobSpec;
 use crate::study::{Job, Parameter, Preset, SingleJob, Study, job_key};
@@ -48,7 +48,7 @@ pub async fn select_by_key(
         Ok::<_, SweepError>((job, parameters))
     })
     .await?;
-    let parameters = parameters.map_or_else(|| Ok(Vec::new()), |text| grid_parameters(&job.key, &text))?;
+    let parameters = parameters.map_or_else(|| Ok(Vec::new()), |text| of_grid(&job.key, &text))?;
     let spec = job_spec(&job.key, &job.payload)?;
     Ok(SelectedJob { key: job.key, spec, parameters, from_scene: Vec::new() })
 }
@@ -204,9 +204,7 @@ pub fn row_of_job(key: &str, spec: &JobSpec, state: RowState) -> JobRow {
     JobRow {
         study: String::new(),
         job: key.to_owned(),
-        parameters: Vec::new(),
-        omega_rpm: spec.scene.disk.omega_rpm,
-        mu: spec.scene.contact.mu,
+        parameters: Parameters::new(spec.scene.disk.omega_rpm, spec.scene.contact.mu, Vec::new()),
         has_one_mu: spec.scene.contact.law.has_one_mu(),
         state,
         wall_s: None,
@@ -216,6 +214,11 @@ pub fn row_of_job(key: &str, spec: &JobSpec, state: RowState) -> JobRow {
         why: None,
         inputs: Vec::new(),
     }
+}
+
+/// The grid parameters of a stored row.
+fn of_grid(key: &str, text: &str) -> Result<Vec<(String, Value)>, SweepError> {
+    Ok(StoredParameters::read(text, || format!("job {key}"))?.grid)
 }
 
 /// The job in a database whose key is `prefix` or begins with it.
@@ -233,7 +236,7 @@ pub async fn find_job(queue: &mut Queue, prefix: &str) -> Result<StoredJob, Swee
         else {
             continue;
         };
-        studies.push(StudyOfJob { study, parameters: grid_parameters(&details.key, &parameters)? });
+        studies.push(StudyOfJob { study, parameters: of_grid(&details.key, &parameters)? });
     }
     Ok(StoredJob { details, studies })
 }

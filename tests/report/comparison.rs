@@ -1,7 +1,7 @@
 //! Several sources side by side: studies, and measured points.
 
 use crate::charts::{self, only, texts};
-use crate::synthetic::{measured, periodic, record, report, row};
+use crate::synthetic::{measured, parameters, periodic, record, report, row};
 use std::fs;
 use tribosweep_mechanics::analysis::{Outcome, Regime};
 use tribosweep_output::publish::chart::Rgb;
@@ -112,7 +112,7 @@ fn studies_are_compared() {
 fn a_point_of_unknown_friction_is_compared_with_every_curve() {
     let mut rows = study("simulated", 0.3);
     rows.extend(study("simulated", 0.2).into_iter().map(|job| JobRow {
-        mu: 0.3,
+        parameters: parameters(job.parameters.omega_rpm(), 0.3),
         job: format!("{}-low", job.job),
         ..job
     }));

@@ -59,8 +59,8 @@ fn each_mu_has_a_curve_and_each_result_a_marker() {
     for point in points(panel) {
         let tip = point.tip.as_ref().expect("a tooltip");
         let row = rows.iter().find(|row| row.job == data(tip, "job")).expect("its job");
-        assert_eq!(point.at, (row.omega_rpm, row.record().expect("a result").mu_star));
-        assert_eq!(data(tip, "mu").parse(), Ok(row.mu));
+        assert_eq!(point.at, (row.parameters.omega_rpm(), row.record().expect("a result").mu_star));
+        assert_eq!(data(tip, "mu").parse(), Ok(row.parameters.mu()));
     }
 }
 
@@ -68,8 +68,8 @@ fn each_mu_has_a_curve_and_each_result_a_marker() {
 #[test]
 fn only_laws_with_one_coefficient_have_its_line() {
     let mut rows = partial_study();
-    for row in rows.iter_mut().filter(|row| row.mu == 0.3) {
-        row.has_one_mu = row.omega_rpm > 10.0;
+    for row in rows.iter_mut().filter(|row| row.parameters.mu() == 0.3) {
+        row.has_one_mu = row.parameters.omega_rpm() > 10.0;
     }
     let levels: Vec<f64> = guides(&panel(&rows, Plot::MuStar)).iter().map(|guide| guide.at).collect();
     assert_eq!(levels, [0.2, 0.4]);

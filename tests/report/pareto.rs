@@ -2,7 +2,7 @@
 
 use crate::charts::{points, texts};
 use crate::random::Random;
-use crate::synthetic::{failed, record, row, with};
+use crate::synthetic::{failed, parameters, record, row, with};
 use std::fs;
 use tribosweep_mechanics::analysis::{Outcome, Regime};
 use tribosweep_output::report::pareto::refinement::{Level, Unclean, limit, observed_order};
@@ -207,7 +207,7 @@ fn given_steps_are_extrapolated_in_both_directions() {
 fn physical_cases_are_kept_apart() {
     let mut rows = product();
     rows.extend(product().into_iter().map(|mut row| {
-        row.omega_rpm = 35.0;
+        row.parameters = parameters(35.0, row.parameters.mu());
         row.job += "-35";
         if let Some(numerics) = &mut row.numerics {
             numerics.case = "other".to_owned();

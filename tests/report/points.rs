@@ -27,17 +27,17 @@ fn job(study: &str, omega_rpm: f64, mu: f64, width_m: f64) -> JobRow {
 }
 
 fn point(row: &JobRow) -> StabilityPoint {
-    let growth_rate_per_s = 1000.0 * (row.mu - 0.3);
-    let mut stability = SlidingStability { mu_star: row.mu, ..SlidingStability::example() };
+    let mu = row.parameters.mu();
+    let growth_rate_per_s = 1000.0 * (mu - 0.3);
+    let mut stability = SlidingStability { mu_star: mu, ..SlidingStability::example() };
     stability.modes[0].growth_rate_per_s = growth_rate_per_s;
-    let parameters = row.parameters.clone();
-    StabilityPoint { omega_rpm: row.omega_rpm, mu: row.mu, parameters, on_grid: true, stability }
+    StabilityPoint { parameters: row.parameters.clone(), on_grid: true, stability }
 }
 
 /// Boundaries and minima along both parameters.
 fn findings(rows: &[JobRow]) -> Findings {
     let without = |over: &str| -> Vec<(String, Value)> {
-        rows[0].parameters.iter().filter(|(name, _)| name != over).cloned().collect()
+        rows[0].parameters.of_grid().iter().filter(|(name, _)| name != over).cloned().collect()
     };
     let crossing = |over: &str| Crossing {
         rest: without(over),
@@ -56,7 +56,7 @@ fn findings(rows: &[JobRow]) -> Findings {
         wanted: 0.001,
         is_flat: false,
     };
-    let parameters = rows[0].parameters.clone();
+    let parameters = rows[0].parameters.of_grid().to_vec();
     Findings {
         waves: vec![BTreeMap::from([("curve".to_owned(), 3)])],
         state: "finished".to_owned(),

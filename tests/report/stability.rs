@@ -2,7 +2,7 @@
 
 use crate::maps;
 use crate::report_files::{REPORT, STABILITY};
-use crate::synthetic::{done, periodic, record, report, row, with};
+use crate::synthetic::{done, parameters, periodic, record, report, row, with};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::fs;
@@ -33,8 +33,7 @@ fn point(omega_rpm: f64, mu: f64) -> StabilityPoint {
     let modes = vec![mode(15_000.0, 1000.0 * (mu - mu_c(omega_rpm))), mode(21_000.0, -800.0)];
     let above_band = AboveBand::Nothing;
     let stability = SlidingStability { mu_star: mu, above_band, modes, ..SlidingStability::example() };
-    let parameters = vec![("omega_rpm".to_owned(), omega_rpm.into()), ("mu".to_owned(), mu.into())];
-    StabilityPoint { omega_rpm, mu, parameters, on_grid: true, stability }
+    StabilityPoint { parameters: parameters(omega_rpm, mu), on_grid: true, stability }
 }
 
 fn points() -> Vec<StabilityPoint> {
@@ -198,7 +197,7 @@ fn the_stability_has_a_report_of_its_own() {
     // At 5 rpm one mode beside the threshold is not converged; at 20 rpm sliding is unstable at every μ, at 100 rpm stable.
     for point in &mut points {
         let growing = &mut point.stability.modes[0];
-        match (point.omega_rpm, point.mu) {
+        match (point.parameters.omega_rpm(), point.parameters.mu()) {
             (5.0, 0.3) => growing.is_converged = false,
             (20.0, _) => growing.growth_rate_per_s = 5.0,
             (100.0, _) => growing.growth_rate_per_s = -5.0,
@@ -305,7 +304,7 @@ fn panels_are_speeds_and_sheets_are_combinations() {
         speeds.into_iter().flat_map(move |omega| {
             FRICTION.map(|mu| {
                 let mut own = point(omega, mu);
-                own.parameters.push(("load_n".to_owned(), load.into()));
+                own.parameters.extend([("load_n".to_owned(), load.into())]);
                 own
             })
         })
@@ -425,7 +424,7 @@ fn both_modes_that_lock_in_have_a_colour() {
 fn thresholds_have_multiples_of_units() {
     let at = |omega: f64, modulus_pa: f64| {
         let mut own = point(omega, 0.3);
-        own.parameters.push(("young_modulus_pa".to_owned(), modulus_pa.into()));
+        own.parameters.extend([("young_modulus_pa".to_owned(), modulus_pa.into())]);
         own.stability.modes = vec![mode(15_000.0, 1e-7 * (modulus_pa - 2.5e8))];
         own
     };

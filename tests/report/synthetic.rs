@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 use tribosweep_mechanics::analysis::{JobRecord, Outcome, Regime};
 use tribosweep_output::publish::{Drawing, Sheet, SheetGroup, SheetLine};
 use tribosweep_output::report::{
-    Discretisation, JobRow, MeasuredValue, Measurement, MeshError, Report, RowState, View,
+    Discretisation, JobRow, MeasuredValue, Measurement, MeshError, Parameters, Report, RowState, View,
 };
 
 /// The usual axes.
@@ -38,7 +38,7 @@ pub fn measured(omega_rpm: f64, mu: f64, mu_star: f64, error: Option<f64>) -> Jo
     JobRow {
         study: "rig".to_owned(),
         job: format!("rig.csv:{omega_rpm}"),
-        parameters: Vec::new(),
+        parameters: Parameters::new(omega_rpm, mu, Vec::new()),
         discretisation: Discretisation::NotMeasured,
         ..row(omega_rpm, mu, RowState::Measured(Measurement { values: vec![value], squeals: None }))
     }
@@ -75,13 +75,17 @@ pub fn failed(error: &str) -> RowState {
     RowState::Failed { error: error.to_owned() }
 }
 
+/// Those of a grid of speeds and friction coefficients.
+pub fn parameters(omega_rpm: f64, mu: f64) -> Parameters {
+    let grid = [("omega_rpm", omega_rpm), ("mu", mu)];
+    Parameters::new(f64::NAN, f64::NAN, grid.map(|(name, x)| (name.to_owned(), x.into())).into())
+}
+
 pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> JobRow {
     JobRow {
         study: "reference".to_owned(),
         job: format!("job-{omega_rpm}-{mu}"),
-        parameters: vec![("omega_rpm".to_owned(), omega_rpm.into()), ("mu".to_owned(), mu.into())],
-        omega_rpm,
-        mu,
+        parameters: parameters(omega_rpm, mu),
         has_one_mu: true,
         state,
         wall_s: Some(12.5),
@@ -97,7 +101,7 @@ pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> JobRow {
 pub fn with(mut row: JobRow, name: &str, value: impl Into<Value>) -> JobRow {
     let value = value.into();
     row.job = format!("{}-{value}", row.job);
-    row.parameters.push((name.to_owned(), value));
+    row.parameters.extend([(name.to_owned(), value)]);
     row
 }
 

@@ -1,6 +1,6 @@
 //! Where jobs fail or do not become periodic.
 
-use crate::synthetic::{failed, periodic, record, row, with};
+use crate::synthetic::{failed, parameters, periodic, record, row, with};
 use tribosweep_mechanics::analysis::{Obstacle, Outcome, Regime};
 use tribosweep_output::report::trouble::{Grid, MAX_LISTED, Region, cause, regions, sentences};
 use tribosweep_output::report::{JobRow, RowState};
@@ -121,7 +121,7 @@ fn many_parameters_are_fast() {
     assert_eq!(sentences(&regions(&rows))[0].split(" (job").next(), Some("failed: 1024 jobs: no"));
 
     let mut grid = Grid::default();
-    grid.add(7.0, 0.4, &[]);
+    grid.add(&parameters(7.0, 0.4));
     let trouble = cause(&rows[0]).unwrap();
     let found =
         grid.regions([(0, "a".to_owned(), trouble.clone()), (1, "b".to_owned(), trouble)], MAX_LISTED);

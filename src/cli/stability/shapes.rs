@@ -11,7 +11,7 @@ use crate::publish::{Folder, value};
 use crate::report::assignment;
 use crate::solver::Model;
 use crate::study::Job;
-use crate::sweep::Plan;
+use crate::sweep::{Plan, parameters_of};
 use crate::worker::Interrupt;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::path::Path;
@@ -91,23 +91,15 @@ fn write_point(files: &mut Folder, job: &Job, model: &Model, shapes: &[Shape]) -
     Ok(())
 }
 
-/// ω and μ of a point, and its further parameters.
-fn parameters(job: &Job) -> Vec<(String, serde_json::Value)> {
-    let scene = &job.spec.scene;
-    let own = [("omega_rpm", scene.disk.omega_rpm), ("mu", scene.contact.mu)];
-    let further = job.parameters.iter().filter(|(name, _)| own.iter().all(|(known, _)| known != name));
-    own.iter().map(|(name, value)| ((*name).to_owned(), (*value).into())).chain(further.cloned()).collect()
-}
-
 /// The point as part of a file's name.
 fn slug(job: &Job) -> String {
     let parts: Vec<String> =
-        parameters(job).iter().map(|(name, found)| format!("{name}-{}", value::text(found))).collect();
+        parameters_of(job).iter().map(|(name, found)| format!("{name}-{}", value::text(found))).collect();
     value::file_name_part(&parts.join("_"))
 }
 
 /// The point in words.
 fn in_words(job: &Job) -> String {
-    let parts: Vec<String> = parameters(job).iter().map(|(name, found)| assignment(name, found)).collect();
+    let parts: Vec<String> = parameters_of(job).iter().map(|(name, found)| assignment(name, found)).collect();
     parts.join(", ")
 }

@@ -7,7 +7,6 @@ mod shown;
 pub use fixed::{FURTHER, PLAIN};
 pub(super) use shown::{Digits, Last, Shown};
 
-use super::parameters::is_further;
 use super::row::{JobRow, RowState};
 use crate::publish::table::{Column, Head};
 use crate::units::name_and_unit;
@@ -194,27 +193,25 @@ impl ExportColumn {
     }
 }
 
-/// The columns of the plain export: the fixed ones, and one for each of the `grid` parameters other than ω and μ.
-pub fn plain(grid: &[String]) -> Vec<ExportColumn> {
-    PLAIN.iter().cloned().chain(of_parameters(grid)).collect()
+/// The columns of the plain export: the fixed ones, and one for each of the `parameters` that is not among these.
+pub fn plain<N: AsRef<str>>(parameters: &[N]) -> Vec<ExportColumn> {
+    PLAIN.iter().cloned().chain(of_parameters(parameters)).collect()
 }
 
-/// All columns: those of the plain export, the rest of the record, the `inputs`, and `grid` parameters that are not among
-/// these.
+/// All columns: those of the plain export, the rest of the record, the `inputs`, and `parameters` that are not among these.
 ///
-/// An input or a parameter may have the name of a result, which it does not mean: its column is called `parameter_NAME`. ω and
-/// μ are plain columns already.
-pub fn all(inputs: &[Head], grid: &[String]) -> Vec<ExportColumn> {
+/// An input or a parameter may have the name of a result, which it does not mean: its column is called `parameter_NAME`.
+pub fn all(inputs: &[Head], parameters: &[String]) -> Vec<ExportColumn> {
     let of_input = |(index, input): (usize, &Head)| {
         let head = Head { name: unlike_results(&input.name).into(), ..input.clone() };
         ExportColumn::of_input(head, move |row| row.inputs.get(index).cloned().unwrap_or_default())
     };
-    let inputs_left = inputs.iter().enumerate().filter(|(_, input)| is_further(&input.name));
+    let inputs_left = inputs.iter().enumerate().filter(|(_, input)| !is_of_job(&input.name));
     let is_new = |name: &&String| !inputs.iter().any(|input| input.name == **name);
     fixed()
         .cloned()
         .chain(inputs_left.map(of_input))
-        .chain(of_parameters(grid.iter().filter(is_new)))
+        .chain(of_parameters(parameters.iter().filter(is_new)))
         .collect()
 }
 
@@ -232,12 +229,17 @@ pub(super) fn selected(columns: &[&'static ExportColumn]) -> impl Iterator<Item 
     FIRST.into_iter().chain(columns.iter().copied()).chain([LAST])
 }
 
-/// Columns of grid parameters.
-pub(super) fn of_parameters<'a, N: AsRef<str> + 'a + ?Sized>(
+/// Whether a fixed column says it of every job. ω and μ are such parameters.
+fn is_of_job(name: &str) -> bool {
+    ExportColumn::find(name).is_some_and(|own| own.group == Group::Job)
+}
+
+/// Columns of the parameters that have no fixed column.
+pub(super) fn of_parameters<'a, N: AsRef<str> + 'a>(
     names: impl IntoIterator<Item = &'a N>,
 ) -> impl Iterator<Item = ExportColumn> {
-    names.into_iter().map(|name| {
-        let name = name.as_ref().to_owned();
+    names.into_iter().map(AsRef::as_ref).filter(|name| !is_of_job(name)).map(|name| {
+        let name = name.to_owned();
         let head = Head::new(unlike_results(&name), "", "the grid parameter of that name");
         ExportColumn::of_input(head, move |row| row.parameter(&name))
     })

@@ -6,9 +6,8 @@
 mod packed;
 
 use super::columns;
-use super::export::further_names;
 use super::input::Report;
-use super::parameters::{MU, OMEGA};
+use super::parameters::{MU, OMEGA, parameter_names};
 use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::sensitivity::{self, REGIME, sensitivities};
@@ -100,7 +99,7 @@ struct SetupLine<'a> {
 
 fn data<'a>(report: &Report<'a>, pages: &'a HashMap<String, String>) -> Data<'a> {
     let Report { rows, view, .. } = *report;
-    let parameters: Vec<&str> = [OMEGA, MU].into_iter().chain(further_names(rows)).collect();
+    let parameters = parameter_names(rows.iter().map(|row| &row.parameters));
     let given = parameters.clone().into_par_iter().filter_map(|name| {
         let values = Values::of(&rows.iter().map(|row| shortened(row.parameter(name))).collect::<Vec<_>>())?;
         let meaning = view.descriptions.get(name).map_or(name, String::as_str);
@@ -117,7 +116,10 @@ fn data<'a>(report: &Report<'a>, pages: &'a HashMap<String, String>) -> Data<'a>
         Some(ColumnData { name, unit, meaning, kind: own.group.name(), values })
     };
     let results: Vec<_> = columns::fixed().collect();
-    let results = results.into_par_iter().filter(|own| ![OMEGA, MU].contains(&&*own.column.head.name));
+    let is_parameter = |own: &columns::ExportColumn| {
+        own.group == columns::Group::Job && parameters.contains(&&*own.column.head.name)
+    };
+    let results = results.into_par_iter().filter(|own| !is_parameter(own));
     let mut columns: Vec<_> = given.collect();
     columns.extend(results.filter_map(of_column).collect::<Vec<_>>());
     let page = |(number, row): (usize, &JobRow)| Some((number, pages.get(&row.job)?.as_str()));

@@ -171,7 +171,7 @@ impl Frame<'_> {
             guides.dedup_by(|a, b| a.0.to_bits() == b.0.to_bits());
             return guides;
         }
-        let mut mus = group.jobs.iter().map(|job| job.row.mu).filter(|mu| mu.is_finite());
+        let mut mus = group.jobs.iter().map(|job| job.row.parameters.mu()).filter(|mu| mu.is_finite());
         let first = mus.next();
         let is_same = mus.all(|mu| Some(mu) == first);
         first.filter(|_| is_same && has_one_mu(None)).map(|mu| (mu, GREY)).into_iter().collect()
@@ -295,7 +295,8 @@ impl Frame<'_> {
             (None, Source::Marks(shape)) => Marker::new(shape, colour),
             (None, Source::Lines(_)) => Marker::new(Shape::Cross, colour),
         };
-        let mu = if place.row.mu.is_nan() { String::new() } else { value::number(place.row.mu) };
+        let mu = place.row.parameters.mu();
+        let mu = if mu.is_nan() { String::new() } else { value::number(mu) };
         let tip = place.tip([("y", value::number(self.scalar.value(place.row)?)), ("mu", mu)]);
         let marker = marker.sized(self.radius);
         Some(Point { at: (place.x, y), error: self.error(place), marker, tip: Some(tip) })

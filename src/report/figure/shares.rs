@@ -105,7 +105,7 @@ fn tips(columns: &[Column], axis: &Axis) -> Vec<Cell> {
         let to = half_way(places.get(index + 1), 1.0).min(at + HALF_TIP);
         let percent = |layer: usize| value::number(column.ends[layer + 1] - column.ends[layer]);
         let tip = column.place.tip([
-            ("mu", value::number(column.place.row.mu)),
+            ("mu", value::number(column.place.row.parameters.mu())),
             ("stick", percent(0)),
             ("slip", percent(1)),
             ("separated", percent(2)),

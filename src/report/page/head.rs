@@ -49,8 +49,9 @@ fn found(parts: &Parts) -> Vec<String> {
 fn lowest<'a>(rows: &[&'a JobRow]) -> Option<(&'a JobRow, &'a JobRecord)> {
     // The average of a run that did not settle is no result to begin with.
     let settled = |row: &JobRow| row.record().is_some_and(|record| record.outcome != Outcome::NotPeriodic);
-    let ratio =
-        |row: &JobRow| Some(row.record()?.mu_star / row.mu).filter(|ratio| ratio.is_finite() && settled(row));
+    let ratio = |row: &JobRow| {
+        Some(row.record()?.mu_star / row.parameters.mu()).filter(|ratio| ratio.is_finite() && settled(row))
+    };
     let ratios = rows.iter().filter_map(|row| Some((ratio(row)?, *row)));
     let (_, row) = ratios.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some((row, row.record()?))
@@ -61,7 +62,7 @@ const LITTLE: f64 = 0.995;
 
 fn friction(rows: &[&JobRow]) -> Option<String> {
     let (row, record) = lowest(rows)?;
-    if record.mu_star / row.mu > LITTLE {
+    if record.mu_star / row.parameters.mu() > LITTLE {
         return Some("μ* is μ within half a per cent in all jobs.".to_owned());
     }
     // The error over the cycles alone would claim more than is known.
@@ -70,7 +71,7 @@ fn friction(rows: &[&JobRow]) -> Option<String> {
         None => digits::by_error(MU_STAR, row),
     };
     let place = parameters_in_words(row);
-    let percent = value::significant(100.0 * record.mu_star / row.mu, 2);
+    let percent = value::significant(100.0 * record.mu_star / row.parameters.mu(), 2);
     Some(format!("μ* falls furthest below μ at {place}: to {mu_star}, {percent} % of μ."))
 }
 

@@ -1,14 +1,12 @@
 //! The numerics of a job, and the physical case in words.
 
 use crate::publish::table::Column;
-use crate::report::parameters::{MU, OMEGA, assignments};
+use crate::report::parameters::assignments;
 use crate::report::row::{JobNumerics, JobRow};
 
 /// The physical parameters of a job in words, ω and μ first.
 pub(super) fn physics_in_words(row: &JobRow, is_numerics: fn(&str) -> bool) -> String {
-    let further = row.further().filter(|(name, _)| !is_numerics(name));
-    let further = further.map(|(name, value)| (name, value.clone()));
-    assignments([OMEGA, MU].map(|name| (name, row.parameter(name))).into_iter().chain(further))
+    assignments(row.parameters.iter().filter(|(name, _)| !is_numerics(name)))
 }
 
 /// The settings of a job that the comparison is about.

@@ -8,8 +8,7 @@ use super::settings::SETTINGS;
 use crate::publish::table::{Column, FileColumns, Table};
 use crate::publish::value::{self, MISSING, number};
 use crate::report::columns::ExportColumn;
-use crate::report::export::further_names;
-use crate::report::parameters::{self, MU, OMEGA, assignments};
+use crate::report::parameters::{self, MU, OMEGA, assignments, parameter_names};
 use crate::report::row::JobNumerics;
 
 /// Settings that follow from another one, which a reader sees.
@@ -74,7 +73,8 @@ fn lines_of<'a>(number: usize, case: &'a Case<'a>) -> impl Iterator<Item = Line<
 /// The jobs of all cases with their errors. Relative errors have a sign.
 pub(super) fn jobs(comparison: &Comparison) -> Table {
     let mut columns = of_job();
-    let names = further_names(comparison.cases.iter().flat_map(|case| &case.jobs).map(|job| job.row));
+    let jobs = comparison.cases.iter().flat_map(|case| &case.jobs);
+    let names = parameter_names(jobs.map(|job| &job.row.parameters));
     let is_known = |name: &str| of_job::<'static>().iter().any(|column| column.head.name == name);
     columns.extend(names.into_iter().filter(|name| !is_known(name)).map(|name| {
         let (head, name) = (parameters::head(name), name.to_owned());

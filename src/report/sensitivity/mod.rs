@@ -11,8 +11,7 @@ pub(super) use tables::{MainIndex, described};
 pub use tables::{indices_table, markdown, page};
 pub use types::{Index, Indices, REGIME, Sensitivity};
 
-use super::export::further_names;
-use super::parameters::{MU, OMEGA, head};
+use super::parameters::{head, parameter_names};
 use super::row::{JobRow, RowState};
 use super::scalar::Scalar;
 use crate::publish::table::{Column, Head, Table};
@@ -45,7 +44,7 @@ pub fn sensitivities(rows: &[JobRow], of: &[&'static Scalar], is_morris: bool) -
 }
 
 fn parameters(rows: &[&JobRow]) -> Vec<Parameter> {
-    let names = [OMEGA, MU].into_iter().chain(further_names(rows.iter().copied()));
+    let names = parameter_names(rows.iter().map(|row| &row.parameters));
     let parameter = |name: &str| {
         let mut known: Vec<String> = Vec::new();
         let given: Vec<_> = rows.iter().map(|row| row.parameter(name)).collect();
@@ -65,7 +64,7 @@ fn parameters(rows: &[&JobRow]) -> Vec<Parameter> {
         let varies = values.iter().any(|value| *value != values[0]);
         varies.then(|| Parameter { name: name.to_owned(), is_number, values })
     };
-    names.filter_map(parameter).collect()
+    names.into_iter().filter_map(parameter).collect()
 }
 
 /// The jobs that ended, with the parameters that vary.

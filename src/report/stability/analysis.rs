@@ -8,7 +8,7 @@ use crate::analysis::branches::{Sample, branches};
 use crate::publish::value;
 use crate::report::Discretisation;
 use crate::report::layout::{Group, Layout};
-use crate::report::parameters::{MU, OMEGA};
+use crate::report::parameters::Parameters;
 use crate::report::row::{JobRow, RowState};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
@@ -16,20 +16,17 @@ use crate::units::name_and_unit;
 use serde_json::Value;
 
 /// The points as rows, so that a [`Layout`] can group them. The key of a row is the number of its point. Parameters that move along
-/// the way of the thresholds do not tell groups apart. If ω or μ is one of them, the rows do not say it.
+/// the way of the thresholds do not tell groups apart: the rows do not say them.
 pub(in crate::report) fn rows(points: &[StabilityPoint], along: &Along) -> Vec<JobRow> {
     let kept = |point: &StabilityPoint| {
-        let parameters = point.parameters.iter();
-        parameters.filter(|(name, _)| !along.with.contains(name)).cloned().collect()
+        let own = point.parameters.iter().filter(|(name, _)| !along.with.iter().any(|with| with == name));
+        let own = own.map(|(name, value)| (name.to_owned(), value.clone()));
+        Parameters::new(f64::NAN, f64::NAN, own.collect())
     };
-    let unless_moved =
-        |name: &str, x: f64| if along.with.iter().any(|with| with == name) { f64::NAN } else { x };
     let row = |(number, point): (usize, &StabilityPoint)| JobRow {
         study: String::new(),
         job: number.to_string(),
         parameters: kept(point),
-        omega_rpm: unless_moved(OMEGA, point.omega_rpm),
-        mu: unless_moved(MU, point.mu),
         has_one_mu: false,
         state: RowState::Pending,
         wall_s: None,
@@ -263,6 +260,11 @@ mod tests {
     use crate::report::figure::stability_figures;
     use std::f64::consts::TAU;
 
+    fn of(omega_rpm: f64, mu: f64, further: &[(&str, f64)]) -> Parameters {
+        let further = further.iter().map(|(name, value)| ((*name).to_owned(), (*value).into()));
+        Parameters::new(omega_rpm, mu, further.collect())
+    }
+
     fn point(omega_rpm: f64, mu: f64, modes: &[(f64, f64)]) -> StabilityPoint {
         let mode = |(frequency_hz, growth_rate_per_s): &(f64, f64)| ComplexMode {
             frequency_hz: *frequency_hz,
@@ -273,7 +275,7 @@ mod tests {
         };
         let modes = modes.iter().map(mode).collect();
         let stability = SlidingStability { mu_star: mu, modes, ..SlidingStability::example() };
-        StabilityPoint { omega_rpm, mu, parameters: Vec::new(), on_grid: true, stability }
+        StabilityPoint { parameters: of(omega_rpm, mu, &[]), on_grid: true, stability }
     }
 
     /// Protects: modes of neighbouring speeds with nearly the same frequency are one family, the one with the smallest threshold
@@ -328,10 +330,8 @@ mod tests {
     fn thresholds_of_a_zip_are_along_it() {
         let at = |modulus_pa: f64, rate: f64| {
             let mut point = point(7.0, 0.3, &[(10_000.0, rate)]);
-            point.parameters = vec![
-                ("young_modulus_pa".to_owned(), modulus_pa.into()),
-                ("load_n".to_owned(), (1.0e-8 * modulus_pa).into()),
-            ];
+            point.parameters =
+                of(7.0, 0.3, &[("young_modulus_pa", modulus_pa), ("load_n", 1.0e-8 * modulus_pa)]);
             point.stability.above_band = AboveBand::Damped;
             point
         };
@@ -354,8 +354,9 @@ mod tests {
     fn drawn_points_have_no_thresholds() {
         let drawn = |k: u32| {
             let mu = 0.1 + 0.05 * f64::from(k);
-            let mut point = point(7.0 + f64::from(k % 5), mu, &[(10_000.0, f64::from(k) - 3.5)]);
-            point.parameters = vec![("load_n".to_owned(), (20 + 7 * k % 11).into())];
+            let omega_rpm = 7.0 + f64::from(k % 5);
+            let mut point = point(omega_rpm, mu, &[(10_000.0, f64::from(k) - 3.5)]);
+            point.parameters = of(omega_rpm, mu, &[("load_n", f64::from(20 + 7 * k % 11))]);
             point
         };
         let mut points: Vec<StabilityPoint> = (0..8).map(drawn).collect();
@@ -368,8 +369,7 @@ mod tests {
             let drawn = |plot| stability_figures(&points, &along, &View::DEFAULT, plot).len();
             assert_eq!([LockIn, Thresholds, Map].map(drawn), [0, 0, usize::from(!has_load)]);
             for (k, point) in points.iter_mut().enumerate() {
-                point.parameters.clear();
-                point.omega_rpm = 7.0 + k as f64;
+                point.parameters = of(7.0 + k as f64, point.parameters.mu(), &[]);
             }
         }
     }
@@ -406,7 +406,7 @@ mod tests {
     fn points_that_share_a_value_both_count() {
         let at = |mu: f64, load_n: f64, rate: f64| {
             let mut point = point(7.0, mu, &[(10_000.0, rate)]);
-            point.parameters = vec![("load_n".to_owned(), load_n.into())];
+            point.parameters = of(7.0, mu, &[("load_n", load_n)]);
             point
         };
         let mut points =

@@ -5,9 +5,8 @@ use super::analysis::{Analysis, MOVES, rows};
 use super::ranges::{Known, Onset, Speed};
 use crate::analysis::ComplexMode;
 use crate::publish::table::{Column, FileColumns, Head, Table};
-use crate::report::export::add_further_names;
 use crate::report::layout::Group;
-use crate::report::parameters::{self, MU, OMEGA, is_further};
+use crate::report::parameters::{self, MU, parameter_names};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
 use crate::units::name_and_unit;
@@ -42,16 +41,12 @@ const ABOVE: &str = "what is known above band_hz: nothing is there, damped, coar
 /// The leading `modes` modes at each point: a line for each of them.
 pub fn modes_table<'a>(points: impl IntoIterator<Item = &'a StabilityPoint>, modes: usize) -> Table {
     let points: Vec<&StabilityPoint> = points.into_iter().collect();
-    let mut further: Vec<&str> = Vec::new();
-    for point in &points {
-        add_further_names(&mut further, &point.parameters);
-    }
     let of_parameter = |name: &str| {
         let (head, name) = (parameters::head(name), name.to_owned());
         Column::made(head, move |of: &NumberedMode| of.point.parameter(&name))
     };
-    let place = [OMEGA, MU].into_iter().chain(further).map(of_parameter);
-    let columns: Vec<_> = place.chain(of_mode()).collect();
+    let names = parameter_names(points.iter().map(|point| &point.parameters));
+    let columns: Vec<_> = names.into_iter().map(of_parameter).chain(of_mode()).collect();
     let of_point = |point: &'a StabilityPoint| {
         let modes = (1..).zip(point.stability.modes.iter().take(modes));
         modes.map(move |(number, mode)| NumberedMode { point, number, mode })
@@ -120,10 +115,12 @@ pub fn thresholds_table(points: &[StabilityPoint], along: &Along) -> (Table, Vec
     let mut lines = Vec::new();
     let names = [along.across()].into_iter().chain(analysis.layout.further.iter().copied());
     let names: Vec<&str> = names.collect();
-    // ω and μ are plain numbers everywhere.
+    // What has a symbol is a plain number everywhere.
     let in_words = |(name, cell): (&&str, Value)| match cell {
         Value::Null if along.moves(name) => MOVES.into(),
-        cell if is_further(name) && cell.is_f64() => parameters::in_words(name, &cell).into(),
+        cell if parameters::symbol(name).is_none() && cell.is_f64() => {
+            parameters::in_words(name, &cell).into()
+        }
         cell => cell,
     };
     for_each_speed(&analysis, |place, speed| {

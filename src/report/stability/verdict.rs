@@ -2,10 +2,9 @@
 
 use crate::analysis::{Outcome, SlidingStability};
 use crate::publish::value;
-use crate::report::parameters::is_further;
+use crate::report::parameters::Parameters;
 use crate::report::row::JobRow;
 use crate::report::stability_point::{StabilityPoint, leading};
-use serde_json::Value;
 use std::collections::HashMap;
 
 /// A job whose result linear stability alone does not explain.
@@ -50,7 +49,7 @@ impl<'a> Verdicts<'a> {
     pub fn new(points: &'a [StabilityPoint]) -> Self {
         let mut known = HashMap::new();
         for point in points {
-            known.entry(key(point.omega_rpm, point.mu, &point.parameters)).or_insert(&point.stability);
+            known.entry(key(&point.parameters)).or_insert(&point.stability);
         }
         Self { known }
     }
@@ -59,8 +58,7 @@ impl<'a> Verdicts<'a> {
     pub fn of(&self, row: &JobRow) -> Option<Verdict> {
         let record = row.record().filter(|_| !self.known.is_empty())?;
         let own = record.stability.as_ref();
-        let stability =
-            own.or_else(|| self.known.get(&key(row.omega_rpm, row.mu, &row.parameters)).copied())?;
+        let stability = own.or_else(|| self.known.get(&key(&row.parameters)).copied())?;
         let mode = leading(stability).filter(|mode| mode.is_converged && !stability.decided)?;
         let difference = (record.mu_star - stability.mu_star).abs();
         if mode.growth_rate_per_s < 0.0 {
@@ -72,11 +70,11 @@ impl<'a> Verdicts<'a> {
     }
 }
 
-/// Values are compared as they are shown: 1 and 1.0 are equal. The order of the further parameters does not matter.
-fn key(omega_rpm: f64, mu: f64, parameters: &[(String, Value)]) -> String {
-    let further = parameters.iter().filter(|(name, value)| is_further(name) && !value.is_null());
+/// Values are compared as they are shown: 1 and 1.0 are equal. The order of the parameters does not matter.
+fn key(parameters: &Parameters) -> String {
+    let known = parameters.iter().filter(|(_, value)| !value.is_null());
     let mut texts: Vec<String> =
-        further.map(|(name, value)| format!("{name}={}", value::text(value))).collect();
+        known.map(|(name, value)| format!("{name}={}", value::text(value))).collect();
     texts.sort();
-    format!("{},{},{}", value::number(omega_rpm), value::number(mu), texts.join(","))
+    texts.join(",")
 }

@@ -2,7 +2,7 @@
 
 use super::cause::Cause;
 use crate::publish::value;
-use crate::report::parameters::{MU, OMEGA, assignment, is_further, range};
+use crate::report::parameters::{Parameters, assignment, range};
 use serde::Serialize;
 use serde_json::Value;
 use std::cmp::Reverse;
@@ -58,13 +58,10 @@ struct Troubled<'a> {
 }
 
 impl Grid {
-    /// Adds the next row. ω and μ may be among `parameters` too.
-    pub fn add(&mut self, omega_rpm: f64, mu: f64, parameters: &[(String, Value)]) {
-        let own = [(OMEGA, Value::from(omega_rpm)), (MU, Value::from(mu))];
-        let further = parameters.iter().map(|(name, value)| (name.as_str(), value));
-        let further = further.filter(|(name, _)| is_further(name));
+    /// Adds the next row.
+    pub fn add(&mut self, parameters: &Parameters) {
         let mut point = vec![ABSENT; self.axes.len()];
-        for (name, value) in own.iter().map(|(name, value)| (*name, value)).chain(further) {
+        for (name, value) in parameters.iter() {
             let axis = self.axis(name);
             point.resize(self.axes.len(), ABSENT);
             point[axis] = self.axes[axis].number(value);

@@ -21,7 +21,7 @@ pub fn regions(rows: &[JobRow]) -> Regions {
     let mut grid = Grid::default();
     let jobs: Vec<&JobRow> = rows.iter().filter(|row| !row.is_measured()).collect();
     for row in &jobs {
-        grid.add(row.omega_rpm, row.mu, &row.parameters);
+        grid.add(&row.parameters);
     }
     let troubled = jobs.iter().enumerate();
     grid.regions(troubled.filter_map(|(index, row)| Some((index, row.job.clone(), cause(row)?))), MAX_LISTED)

@@ -26,7 +26,8 @@ fn next_of_chains(
 ) -> Result<Vec<Job>, StudyError> {
     let grid = study.points(solver::VERSION)?;
     let chains = chains_of(&grid, along);
-    let by_place: HashMap<String, &JobRow> = rows.iter().map(|row| (place(&row.parameters), row)).collect();
+    let by_place: HashMap<String, &JobRow> =
+        rows.iter().map(|row| (place(row.parameters.of_grid()), row)).collect();
     let mut next = Vec::new();
     for direction in &continues.directions {
         for chain in &chains {

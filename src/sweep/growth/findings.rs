@@ -118,9 +118,9 @@ fn basins_of(rows: &[JobRow]) -> Vec<crate::report::Basin> {
 }
 
 fn own<'a>(row: &'a JobRow, name: &str) -> Option<&'a Value> {
-    row.parameters.iter().find(|(own, _)| own == name).map(|(_, value)| value)
+    row.parameters.get(name)
 }
 
 fn without(row: &JobRow, name: &str) -> Vec<(String, Value)> {
-    row.parameters.iter().filter(|(own, _)| own != name).cloned().collect()
+    row.parameters.of_grid().iter().filter(|(own, _)| own != name).cloned().collect()
 }

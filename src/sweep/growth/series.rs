@@ -19,11 +19,13 @@ pub struct Series<'a> {
 pub fn series_along<'a>(rows: &'a [JobRow], along: &str) -> Vec<Series<'a>> {
     let mut found: IndexMap<String, (usize, Series<'a>)> = IndexMap::new();
     for row in rows {
-        let Some(x) = row.parameters.iter().find(|(name, _)| name == along).and_then(|(_, x)| x.as_f64())
+        let Some(x) =
+            row.parameters.of_grid().iter().find(|(name, _)| name == along).and_then(|(_, x)| x.as_f64())
         else {
             continue;
         };
-        let rest: Vec<_> = row.parameters.iter().filter(|(name, _)| name != along).cloned().collect();
+        let rest: Vec<_> =
+            row.parameters.of_grid().iter().filter(|(name, _)| name != along).cloned().collect();
         let key = serde_json::to_string(&rest).unwrap_or_default();
         let (given, series) = found.entry(key).or_insert_with(|| (0, Series { rest, points: Vec::new() }));
         *given += usize::from(row.wave == 0);
@@ -41,7 +43,7 @@ pub fn series_along<'a>(rows: &'a [JobRow], along: &str) -> Vec<Series<'a>> {
 impl Series<'_> {
     /// The parameters of a point, in the order of the study.
     pub fn at(&self, along: &str, x: f64) -> Vec<(String, Value)> {
-        let order = self.points.first().map_or(&self.rest, |(_, row)| &row.parameters);
+        let order = self.points.first().map_or(self.rest.as_slice(), |(_, row)| row.parameters.of_grid());
         order
             .iter()
             .map(|(name, value)| (name.clone(), if name == along { x.into() } else { value.clone() }))

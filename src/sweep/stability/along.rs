@@ -1,6 +1,6 @@
 //! The parameters along which thresholds can be looked for, and the one that is chosen.
 
-use crate::report::Along;
+use crate::report::{Along, Parameters};
 use crate::study::{Job, Study};
 use serde_json::Value;
 
@@ -45,19 +45,14 @@ fn has_two(values: &[Value]) -> bool {
 }
 
 /// What all points of a series share: every parameter that does not move along it.
-pub fn rest(along: &Along, omega_rpm: f64, mu: f64, parameters: &[(String, Value)]) -> Vec<(String, Value)> {
-    let own = [(OMEGA, omega_rpm), (MU, mu)].map(|(name, value)| (name.to_owned(), Value::from(value)));
-    let further = parameters.iter().filter(|(name, _)| !matches!(name.as_str(), OMEGA | MU)).cloned();
-    own.into_iter().chain(further).filter(|(name, _)| !along.moves(name)).collect()
+pub fn rest(along: &Along, parameters: &Parameters) -> Vec<(String, Value)> {
+    let rest = parameters.iter().filter(|(name, _)| !along.moves(name));
+    rest.map(|(name, value)| (name.to_owned(), value.clone())).collect()
 }
 
-/// The value along it of a job or a row with this speed, μ and parameters.
-pub fn position(along: &Along, omega_rpm: f64, mu: f64, parameters: &[(String, Value)]) -> Option<f64> {
-    match along.parameter.as_str() {
-        OMEGA => Some(omega_rpm),
-        MU => Some(mu),
-        name => parameters.iter().find(|(own, _)| own == name).and_then(|(_, value)| value.as_f64()),
-    }
+/// The value along it of a job or a row with these parameters.
+pub fn position(along: &Along, parameters: &Parameters) -> Option<f64> {
+    parameters.get(&along.parameter)?.as_f64()
 }
 
 /// The values of the parameters at a place of the series of these grid jobs, which are sorted by their place. Parameters that move
@@ -172,7 +167,7 @@ mod tests {
         let along = Along { parameter: "force_n".to_owned(), with: vec!["mu".to_owned()] };
         let parameters = [("mu", 0.2), ("force_n", 30.0), ("young_modulus_pa", 1.0e9)];
         let parameters = parameters.map(|(name, value)| (name.to_owned(), Value::from(value)));
-        let own = rest(&along, 7.0, 0.2, &parameters);
+        let own = rest(&along, &Parameters::new(7.0, 0.2, parameters.into()));
         let expected = [("omega_rpm", 7.0), ("young_modulus_pa", 1.0e9)];
         assert_eq!(own, expected.map(|(name, value)| (name.to_owned(), Value::from(value))));
     }

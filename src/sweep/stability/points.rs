@@ -35,17 +35,10 @@ pub async fn read_stability(queue: &mut Queue, study: &str) -> Result<Vec<Stabil
 
 fn point(row: &JobRow, on_grid: bool) -> Option<StabilityPoint> {
     Some(StabilityPoint {
-        omega_rpm: row.omega_rpm,
-        mu: row.mu,
-        parameters: further(&row.parameters),
+        parameters: row.parameters.clone(),
         on_grid,
         stability: row.record()?.stability.clone()?,
     })
-}
-
-/// The parameters other than ω and μ.
-fn further(parameters: &[(String, Value)]) -> Vec<(String, Value)> {
-    parameters.iter().filter(|(name, _)| !matches!(name.as_str(), "omega_rpm" | "mu")).cloned().collect()
 }
 
 /// The parameters that all points of a series share.
@@ -66,7 +59,7 @@ pub(super) fn by_series<'a>(
     let mut found: IndexMap<String, (Series, Points)> = IndexMap::new();
     for point in points {
         let Some(at) = point.parameter(&along.parameter).as_f64() else { continue };
-        let series = rest(along, point.omega_rpm, point.mu, &point.parameters);
+        let series = rest(along, &point.parameters);
         found.entry(id(&series)).or_insert_with(|| (series, Vec::new())).1.push((at, point));
     }
     let mut found: Vec<_> = found.into_values().collect();

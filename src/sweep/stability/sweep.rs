@@ -10,7 +10,7 @@ use crate::solver;
 use crate::study::Job;
 use crate::sweep::error::SweepError;
 use crate::sweep::plan::Plan;
-use crate::sweep::rows::for_each_row;
+use crate::sweep::rows::{for_each_row, parameters_of};
 use std::collections::BTreeMap;
 
 /// A study of complex modes, with points between those of its grid.
@@ -75,8 +75,8 @@ impl StabilitySweep {
         let mut stored = Vec::new();
         for_each_row(queue, self.plan.name(), Rows::All, |_, row| {
             for (along, series) in &ways {
-                let own = id(&rest(along, row.omega_rpm, row.mu, &row.parameters));
-                let at = position(along, row.omega_rpm, row.mu, &row.parameters);
+                let own = id(&rest(along, &row.parameters));
+                let at = position(along, &row.parameters);
                 let (Some(anchors), Some(at)) = (series.get(&own), at) else { continue };
                 // A job of another version has another key, and is computed again.
                 stored.extend(self.at(along, anchors, at).filter(|job| job.key == row.job));
@@ -110,9 +110,9 @@ impl StabilitySweep {
     fn series(&self, along: &Along) -> BTreeMap<String, Vec<(f64, &Job)>> {
         let mut found: BTreeMap<String, Vec<(f64, &Job)>> = BTreeMap::new();
         for job in &self.grid {
-            let (omega_rpm, mu) = (job.spec.scene.disk.omega_rpm, job.spec.scene.contact.mu);
-            if let Some(at) = position(along, omega_rpm, mu, &job.parameters) {
-                found.entry(id(&rest(along, omega_rpm, mu, &job.parameters))).or_default().push((at, job));
+            let own = parameters_of(job);
+            if let Some(at) = position(along, &own) {
+                found.entry(id(&rest(along, &own))).or_default().push((at, job));
             }
         }
         for anchors in found.values_mut() {

@@ -61,12 +61,13 @@ fn between(low: (f64, f64), high: (f64, f64), is_mu: bool) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::analysis::SlidingStability;
+    use crate::report::Parameters;
 
     fn point(mu: f64, rate: f64) -> StabilityPoint {
         let mut stability = SlidingStability { mu_star: mu, ..SlidingStability::example() };
         let mode = &mut stability.modes[0];
         (mode.growth_rate_per_s, mode.damping_ratio) = (rate, -rate / 1.0e5);
-        StabilityPoint { omega_rpm: 7.0, mu, parameters: Vec::new(), on_grid: true, stability }
+        StabilityPoint { parameters: Parameters::new(7.0, mu, Vec::new()), on_grid: true, stability }
     }
 
     /// Protects: within four waves a crossing is known to 0.2 %, also where the growth rate bends at it as that of two
@@ -87,8 +88,9 @@ mod tests {
                     points.extend(wave.into_iter().map(|mu| point(mu, rate(mu))));
                 }
             }
-            let below = points.iter().filter(|p| p.mu <= threshold).map(|p| p.mu).fold(0.0, f64::max);
-            let above = points.iter().filter(|p| p.mu > threshold).map(|p| p.mu).fold(1.0, f64::min);
+            let mus = || points.iter().map(|point| point.parameters.mu());
+            let below = mus().filter(|mu| *mu <= threshold).fold(0.0, f64::max);
+            let above = mus().filter(|mu| *mu > threshold).fold(1.0, f64::min);
             assert!(above - below <= 1.01 * TOLERANCE * above, "{threshold}: {below} to {above}");
             assert_eq!(next_wave(&Along::mu(), &points), Vec::new(), "{threshold}");
         }
@@ -101,7 +103,7 @@ mod tests {
         let along = Along { parameter: "beta_r_s".to_owned(), with: Vec::new() };
         let at = |beta_r_s: f64| {
             let mut point = point(0.3, 500.0 * (3.3e-8 - beta_r_s) / 1.0e-8);
-            point.parameters = vec![("beta_r_s".to_owned(), beta_r_s.into())];
+            point.parameters = Parameters::new(7.0, 0.3, vec![("beta_r_s".to_owned(), beta_r_s.into())]);
             point
         };
         let mut points = vec![at(2.0e-8), at(4.0e-8), at(8.0e-8)];
