@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::bulk::json;
-use super::engine::{Connection, Statement, query};
+use super::engine::{Connection, Statement, columns, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
@@ -43,7 +43,18 @@ const ROWS: &str = "
     WHERE m.study_id = $1 AND m.ordinal > $2
     ORDER BY m.ordinal LIMIT $3";
 
-type RowColumns = (i64, String, String, String, i64, f64, String, Option<String>);
+columns! {
+    struct RowColumns {
+        ordinal: i64,
+        parameters: String,
+        key: String,
+        batch: String,
+        priority: i64,
+        cost: f64,
+        payload: String,
+        parent: Option<String>,
+    }
+}
 
 /// The states of the same rows' jobs.
 const STATES: &str = "
@@ -51,7 +62,18 @@ const STATES: &str = "
     FROM study_jobs AS m JOIN jobs AS j ON j.id = m.job_id
     WHERE m.study_id = $1 AND m.ordinal >= $2 AND m.ordinal <= $3";
 
-type StateColumns = (String, String, i64, i64, i64, Option<i64>, Option<String>, Option<String>);
+columns! {
+    struct StateColumns {
+        key: String,
+        state: String,
+        attempt: i64,
+        crashes: i64,
+        created_ms: i64,
+        started_ms: Option<i64>,
+        note: Option<String>,
+        label: Option<String>,
+    }
+}
 
 const RESULTS: &str = "
     SELECT j.key, r.attempt, r.record, r.error, r.wall_s, r.started_ms, r.finished_ms, r.provenance, r.digest
@@ -59,18 +81,20 @@ const RESULTS: &str = "
     JOIN jobs AS j ON j.id = m.job_id
     JOIN results AS r ON r.job_id = j.id";
 
-/// Key, attempt, record, error, time, beginning, end, provenance and digest. A result that is damaged stays so.
-type ResultColumns = (
-    String,
-    i64,
-    Option<String>,
-    Option<String>,
-    Option<f64>,
-    Option<i64>,
-    i64,
-    Option<String>,
-    Option<String>,
-);
+columns! {
+    /// A result that is damaged stays so.
+    struct ResultColumns {
+        key: String,
+        attempt: i64,
+        record: Option<String>,
+        error: Option<String>,
+        wall_s: Option<f64>,
+        started_ms: Option<i64>,
+        finished_ms: i64,
+        provenance: Option<String>,
+        digest: Option<String>,
+    }
+}
 
 const CHECKPOINTS: &str = "
     SELECT j.key, c.attempt, c.bytes, c.saved_ms
@@ -129,8 +153,16 @@ const SET_CHECKPOINT: &str = "
 
 const CANCELLED: &str = "UPDATE studies SET cancelled_ms = $2 WHERE id = $1";
 
-/// A study in the other database.
-type StudyColumns = (i64, String, String, i64, Option<i64>);
+columns! {
+    /// A study in the other database.
+    struct StudyColumns {
+        id: i64,
+        name: String,
+        document: String,
+        submitted_ms: i64,
+        cancelled_ms: Option<i64>,
+    }
+}
 
 /// A part of a study in the other database: rows, and everything about their jobs.
 struct Page {
@@ -158,10 +190,10 @@ impl Queue {
         }
         let found: Vec<StudyColumns> = query(STUDIES).bind(study).all(&mut other.connection).await?;
         // Every study is checked before the first one is copied, so that a conflict changes nothing.
-        for (_, name, document, ..) in &found {
-            let here = self.study(name).await?;
-            if here.is_some_and(|here| here.document != *document) {
-                return Err(QueueError::OtherStudy { name: name.clone() });
+        for study in &found {
+            let here = self.study(&study.name).await?;
+            if here.is_some_and(|here| here.document != study.document) {
+                return Err(QueueError::OtherStudy { name: study.name.clone() });
             }
         }
         let mut absorbed = Absorbed::default();
@@ -174,9 +206,10 @@ impl Queue {
     async fn absorb_study(
         &mut self,
         other: &mut Self,
-        (there_id, name, document, submitted_ms, cancelled_ms): &StudyColumns,
+        study: &StudyColumns,
         absorbed: &mut Absorbed,
     ) -> Result<(), QueueError> {
+        let StudyColumns { id: there_id, name, document, submitted_ms, cancelled_ms } = study;
         let was_here = self.study(name).await?.is_some();
         let here_id = self
             .write(async |connection, _| {
@@ -229,9 +262,10 @@ impl Queue {
 async fn read(connection: &mut Connection, study_id: i64, after: i64) -> Result<Option<Page>, QueueError> {
     let rows: Vec<RowColumns> = query(ROWS).bind(study_id).bind(after).bind(PAGE).all(connection).await?;
     let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Ok(None) };
-    let (first, last) = (first.0, last.0);
+    let (first, last) = (first.ordinal, last.ordinal);
     let about = |statement: &'static str| query(statement).bind(study_id).bind(first).bind(last);
-    let row = |(ordinal, parameters, key, batch, priority, cost, payload, parent): RowColumns| {
+    let row = |row: RowColumns| {
+        let RowColumns { ordinal, parameters, key, batch, priority, cost, payload, parent } = row;
         (ordinal, NewJob { key, payload, parameters, cost, batch, priority: Some(priority), parent })
     };
     Ok(Some(Page {
@@ -251,7 +285,7 @@ async fn write(
     keeps_rows: bool,
     now_ms: i64,
 ) -> Result<Absorbed, QueueError> {
-    let keys: Vec<&str> = page.states.iter().map(|state| state.0.as_str()).collect();
+    let keys: Vec<&str> = page.states.iter().map(|state| state.key.as_str()).collect();
     let here: Vec<(String, String, i64)> = query(HERE).bind(json(&keys)).all(connection).await?;
     let here: HashMap<String, (JobState, i64)> = here
         .into_iter()
@@ -272,7 +306,8 @@ async fn write(
     let mut copied: HashMap<&str, i64> = HashMap::new();
     let mut states = Vec::new();
     let mut absorbed = Absorbed::default();
-    for (key, state, attempt, crashes, created_ms, started_ms, note, label) in &page.states {
+    for of_job in &page.states {
+        let StateColumns { key, state, attempt, crashes, created_ms, started_ms, note, label } = of_job;
         let there = match JobState::from_column(state)? {
             // No worker of this database runs it.
             JobState::Running => JobState::Pending,
@@ -295,12 +330,12 @@ async fn write(
         states.push((key, there.as_str(), before + attempt, crashes, created_ms, started_ms, note, label));
     }
     query(SET_STATES).bind(json(&states)).run(connection).await?;
-    for (key, attempt, record, error, wall_s, started_ms, finished_ms, provenance, digest) in &page.results {
-        let Some(before) = copied.get(key.as_str()) else { continue };
-        let result =
-            query(SET_RESULT).bind(key).bind(before + attempt).bind(record).bind(error).bind(*wall_s);
-        let result = result.bind(*started_ms).bind(*finished_ms).bind(provenance);
-        result.bind(digest).run(connection).await?;
+    for result in &page.results {
+        let Some(before) = copied.get(result.key.as_str()) else { continue };
+        let set = query(SET_RESULT).bind(&result.key).bind(before + result.attempt);
+        let set = set.bind(&result.record).bind(&result.error).bind(result.wall_s);
+        let set = set.bind(result.started_ms).bind(result.finished_ms);
+        set.bind(&result.provenance).bind(&result.digest).run(connection).await?;
     }
     for (key, attempt, bytes, saved_ms) in &page.checkpoints {
         let Some(before) = copied.get(key.as_str()) else { continue };

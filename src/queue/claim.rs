@@ -1,5 +1,5 @@
 use super::digest::{self, Integrity};
-use super::engine::{Connection, Statement, query};
+use super::engine::{Connection, Statement, columns, query};
 use super::error::QueueError;
 use super::scope::Scope;
 
@@ -39,6 +39,35 @@ pub struct ClaimedJob {
     pub parent_is_damaged: bool,
 }
 
+/// What a claim returns.
+macro_rules! claimed_columns {
+    () => {
+        "
+    RETURNING jobs.id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id) AS payload, attempt, cost, priority,
+              batch, (SELECT bytes FROM checkpoints WHERE job_id = jobs.id) AS checkpoint, parent,
+              (SELECT bytes FROM final_states
+               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent)) AS parent_state,
+              (SELECT digest FROM final_states
+               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent)) AS parent_digest"
+    };
+}
+
+columns! {
+    struct ClaimedColumns {
+        id: i64,
+        key: String,
+        payload: Option<String>,
+        attempt: i64,
+        cost: f64,
+        priority: i64,
+        batch: String,
+        checkpoint: Option<Vec<u8>>,
+        parent: Option<String>,
+        parent_state: Option<Vec<u8>>,
+        parent_digest: Option<String>,
+    }
+}
+
 /// A claim is one statement, because sending a statement to the database costs more than its work for one job.
 ///
 /// Within a priority, expensive jobs come first, so that at the end no long job is left to a single worker. Jobs of
@@ -51,7 +80,8 @@ pub struct ClaimedJob {
 /// PostgreSQL: SKIP LOCKED passes over the jobs that another worker is claiming. Deadlock is impossible because a claim
 /// never waits for a row.
 const TAKE: Statement = Statement::each(
-    "
+    concat!(
+        "
     UPDATE jobs SET state = 'running', attempt = MAX(attempt, 0) + 1, started_ms = $2, owner = $1,
            lease_until_ms = $3
     WHERE id IN (
@@ -64,15 +94,11 @@ const TAKE: Statement = Statement::each(
               SELECT IIF($5 IS NULL, -9223372036854775808, priority) FROM jobs INDEXED BY jobs_pending
               WHERE state = 'pending' ORDER BY priority DESC, cost DESC, id LIMIT 1)
         ORDER BY priority DESC, cost DESC, id LIMIT $4
-    )
-    RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
-              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
-              parent,
-              (SELECT bytes FROM final_states
-               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent)),
-              (SELECT digest FROM final_states
-               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
-    "
+    )",
+        claimed_columns!()
+    ),
+    concat!(
+        "
     WITH first AS MATERIALIZED (
         SELECT batch, priority FROM jobs
         WHERE state = 'pending' ORDER BY priority DESC, cost DESC, id LIMIT 1
@@ -88,14 +114,9 @@ const TAKE: Statement = Statement::each(
     )
     UPDATE jobs SET state = 'running', attempt = GREATEST(attempt, 0) + 1, started_ms = $2, owner = $1,
            lease_until_ms = $3
-    FROM next WHERE jobs.id = next.id
-    RETURNING jobs.id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
-              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
-              parent,
-              (SELECT bytes FROM final_states
-               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent)),
-              (SELECT digest FROM final_states
-               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
+    FROM next WHERE jobs.id = next.id",
+        claimed_columns!()
+    ),
 );
 
 /// As above, for the study named $6.
@@ -104,7 +125,8 @@ const TAKE: Statement = Statement::each(
 /// looking a job up. Without it, the planner may scan all pending jobs for each row if no job was pending when it last
 /// collected statistics.
 const TAKE_OF_STUDY: Statement = Statement::each(
-    "
+    concat!(
+        "
     UPDATE jobs SET state = 'running', attempt = MAX(attempt, 0) + 1, started_ms = $2, owner = $1,
            lease_until_ms = $3
     WHERE id IN (
@@ -118,15 +140,11 @@ const TAKE_OF_STUDY: Statement = Statement::each(
               WHERE study_id = (SELECT id FROM studies WHERE name = $6)
               ORDER BY priority DESC, cost DESC, job_id LIMIT 1)
         ORDER BY priority DESC, cost DESC, job_id LIMIT $4
-    )
-    RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
-              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
-              parent,
-              (SELECT bytes FROM final_states
-               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent)),
-              (SELECT digest FROM final_states
-               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
-    "
+    )",
+        claimed_columns!()
+    ),
+    concat!(
+        "
     WITH first AS MATERIALIZED (
         SELECT p.batch, p.priority
         FROM study_pending AS p CROSS JOIN LATERAL (
@@ -145,29 +163,9 @@ const TAKE_OF_STUDY: Statement = Statement::each(
     )
     UPDATE jobs SET state = 'running', attempt = GREATEST(attempt, 0) + 1, started_ms = $2, owner = $1,
            lease_until_ms = $3
-    FROM next WHERE jobs.id = next.id
-    RETURNING jobs.id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
-              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
-              parent,
-              (SELECT bytes FROM final_states
-               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent)),
-              (SELECT digest FROM final_states
-               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
-);
-
-/// Number, key, payload, attempt, cost, priority, batch, checkpoint; the parent's key, its final state, and its digest.
-type Columns = (
-    i64,
-    String,
-    Option<String>,
-    i64,
-    f64,
-    i64,
-    String,
-    Option<Vec<u8>>,
-    Option<String>,
-    Option<Vec<u8>>,
-    Option<String>,
+    FROM next WHERE jobs.id = next.id",
+        claimed_columns!()
+    ),
 );
 
 /// What all claims of a transaction share.
@@ -184,7 +182,7 @@ pub(super) async fn take(
     claim: &Claim,
     lease: Lease,
 ) -> Result<Vec<ClaimedJob>, QueueError> {
-    let mut rows: Vec<Columns> = Vec::new();
+    let mut rows: Vec<ClaimedColumns> = Vec::new();
     if claim.limit > 0 {
         let take = match &claim.scope {
             Scope::All => query(TAKE),
@@ -206,12 +204,13 @@ pub(super) async fn take(
         claim.scope.study_id(connection).await?;
     }
     // RETURNING does not guarantee an order.
-    rows.sort_by(|a, b| b.5.cmp(&a.5).then(b.4.total_cmp(&a.4)).then(a.0.cmp(&b.0)));
+    rows.sort_by(|a, b| b.priority.cmp(&a.priority).then(b.cost.total_cmp(&a.cost)).then(a.id.cmp(&b.id)));
     rows.into_iter().map(claimed).collect()
 }
 
-fn claimed(columns: Columns) -> Result<ClaimedJob, QueueError> {
-    let (_, key, payload, attempt, cost, _, batch, checkpoint, parent, state, digest) = columns;
+fn claimed(columns: ClaimedColumns) -> Result<ClaimedJob, QueueError> {
+    let ClaimedColumns { key, payload, attempt, cost, batch, checkpoint, parent, .. } = columns;
+    let (state, digest) = (columns.parent_state, columns.parent_digest);
     let Ok(attempt) = u32::try_from(attempt) else {
         return Err(QueueError::Inconsistent(format!("job {key} was started {attempt} times")));
     };

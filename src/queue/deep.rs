@@ -1,9 +1,9 @@
 //! Reading everything that a database has, to find what is damaged.
 
 use super::digest::{self, Integrity};
-use super::engine::query;
+use super::engine::{columns, query};
 use super::error::QueueError;
-use super::handle::Queue;
+use super::pages::{Paged, Pages};
 
 /// A result of any attempt of any job.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,102 +29,156 @@ pub struct StoredPayload {
     pub payload: Option<String>,
 }
 
+/// Whether the final state of a job is as it was stored.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StoredState {
+    /// The job's key; empty if the job is missing.
+    pub key: String,
+    /// Whether it is as it was stored.
+    pub integrity: Integrity,
+}
+
 /// Rows that are read at a time.
 const PAGE: i64 = 1_000;
+
+/// Rows that are read at a time if each of them may be large.
+const LARGE_PAGE: i64 = 20;
 
 /// A result after the attempt $2 of the job with the number $1.
 const RESULTS: &str = "
     SELECT r.job_id, r.attempt, j.key, r.record, r.error, r.digest,
-           CASE WHEN j.attempt = r.attempt AND j.state IN ('done', 'failed') THEN 1 ELSE 0 END
+           CASE WHEN j.attempt = r.attempt AND j.state IN ('done', 'failed') THEN 1 ELSE 0 END AS counts
     FROM results AS r LEFT JOIN jobs AS j ON j.id = r.job_id
     WHERE r.job_id > $1 OR r.job_id = $1 AND r.attempt > $2
     ORDER BY r.job_id, r.attempt LIMIT $3";
 
-type ResultColumns = (i64, i64, Option<String>, Option<String>, Option<String>, Option<String>, i32);
+columns! {
+    struct ResultColumns {
+        job_id: i64,
+        attempt: i64,
+        key: Option<String>,
+        record: Option<String>,
+        error: Option<String>,
+        digest: Option<String>,
+        counts: i32,
+    }
+}
+
+impl Paged for ResultColumns {
+    type Item = StoredResult;
+
+    fn place(&self) -> Vec<i64> {
+        vec![self.job_id, self.attempt]
+    }
+
+    fn item(self) -> Result<StoredResult, QueueError> {
+        let Self { job_id: _, attempt, key, record, error, digest, counts } = self;
+        let key = key.unwrap_or_default();
+        let expected = || digest::of_result(&key, record.as_deref(), error.as_deref());
+        let integrity = Integrity::of(digest.as_deref(), expected);
+        Ok(StoredResult { key, attempt, counts: counts == 1, record, integrity })
+    }
+}
 
 const PAYLOADS: &str = "
     SELECT j.id, j.key, p.payload FROM jobs AS j LEFT JOIN payloads AS p ON p.job_id = j.id
     WHERE j.id > $1 ORDER BY j.id LIMIT $2";
 
+columns! {
+    struct PayloadColumns {
+        id: i64,
+        key: String,
+        payload: Option<String>,
+    }
+}
+
+impl Paged for PayloadColumns {
+    type Item = StoredPayload;
+
+    fn place(&self) -> Vec<i64> {
+        vec![self.id]
+    }
+
+    fn item(self) -> Result<StoredPayload, QueueError> {
+        Ok(StoredPayload { key: self.key, payload: self.payload })
+    }
+}
+
 const FINAL_STATES: &str = "
     SELECT f.job_id, j.key, f.bytes, f.digest FROM final_states AS f LEFT JOIN jobs AS j ON j.id = f.job_id
-    WHERE f.job_id > $1 ORDER BY f.job_id LIMIT 20";
+    WHERE f.job_id > $1 ORDER BY f.job_id LIMIT $2";
 
-type StateColumns = (i64, Option<String>, Vec<u8>, Option<String>);
+columns! {
+    struct StateColumns {
+        job_id: i64,
+        key: Option<String>,
+        bytes: Vec<u8>,
+        digest: Option<String>,
+    }
+}
 
-const CHECKPOINTS: &str = "SELECT job_id, bytes FROM checkpoints WHERE job_id > $1 ORDER BY job_id LIMIT 20";
+impl Paged for StateColumns {
+    type Item = StoredState;
 
-impl Queue {
-    /// Calls `visit` with every result of every attempt.
-    ///
-    /// # Errors
-    /// If the database cannot be read.
-    pub async fn each_result(&mut self, mut visit: impl FnMut(StoredResult)) -> Result<(), QueueError> {
-        let mut last = (i64::MIN, i64::MIN);
-        loop {
-            let page = query(RESULTS).bind(last.0).bind(last.1).bind(PAGE);
-            let page: Vec<ResultColumns> = page.all(&mut self.connection).await?;
-            let Some(row) = page.last() else { return Ok(()) };
-            last = (row.0, row.1);
-            for (_, attempt, key, record, error, digest, counts) in page {
-                let key = key.unwrap_or_default();
-                let expected = || digest::of_result(&key, record.as_deref(), error.as_deref());
-                let integrity = Integrity::of(digest.as_deref(), expected);
-                visit(StoredResult { key, attempt, counts: counts == 1, record, integrity });
-            }
-        }
+    fn place(&self) -> Vec<i64> {
+        vec![self.job_id]
     }
 
-    /// Calls `visit` with every job's payload.
-    ///
-    /// # Errors
-    /// As [`Self::each_result`].
-    pub async fn each_payload(&mut self, mut visit: impl FnMut(StoredPayload)) -> Result<(), QueueError> {
-        let mut last = i64::MIN;
-        loop {
-            let page = query(PAYLOADS).bind(last).bind(PAGE);
-            let page: Vec<(i64, String, Option<String>)> = page.all(&mut self.connection).await?;
-            let Some(row) = page.last() else { return Ok(()) };
-            last = row.0;
-            for (_, key, payload) in page {
-                visit(StoredPayload { key, payload });
-            }
-        }
+    fn item(self) -> Result<StoredState, QueueError> {
+        let key = self.key.unwrap_or_default();
+        let integrity = Integrity::of(self.digest.as_deref(), || digest::of_state(&key, &self.bytes));
+        Ok(StoredState { key, integrity })
+    }
+}
+
+const CHECKPOINTS: &str = "SELECT job_id, bytes FROM checkpoints WHERE job_id > $1 ORDER BY job_id LIMIT $2";
+
+columns! {
+    struct CheckpointColumns {
+        job_id: i64,
+        bytes: Vec<u8>,
+    }
+}
+
+impl Paged for CheckpointColumns {
+    type Item = usize;
+
+    fn place(&self) -> Vec<i64> {
+        vec![self.job_id]
     }
 
-    /// Calls `visit` with the key of every job whose final state is stored, and with whether that state is intact.
-    ///
-    /// # Errors
-    /// As [`Self::each_result`].
-    pub async fn each_final_state(
-        &mut self,
-        mut visit: impl FnMut(String, Integrity),
-    ) -> Result<(), QueueError> {
-        let mut last = i64::MIN;
-        loop {
-            let page: Vec<StateColumns> = query(FINAL_STATES).bind(last).all(&mut self.connection).await?;
-            let Some(row) = page.last() else { return Ok(()) };
-            last = row.0;
-            for (_, key, bytes, digest) in page {
-                let key = key.unwrap_or_default();
-                let integrity = Integrity::of(digest.as_deref(), || digest::of_state(&key, &bytes));
-                visit(key, integrity);
-            }
-        }
+    fn item(self) -> Result<usize, QueueError> {
+        Ok(self.bytes.len())
     }
+}
 
-    /// Reads all checkpoints and returns their number. Only their job can tell whether they are intact; if they are not, it
-    /// begins anew.
-    ///
-    /// # Errors
-    /// As [`Self::each_result`].
-    pub async fn read_checkpoints(&mut self) -> Result<u64, QueueError> {
-        let (mut last, mut read) = (i64::MIN, 0);
-        loop {
-            let page: Vec<(i64, Vec<u8>)> = query(CHECKPOINTS).bind(last).all(&mut self.connection).await?;
-            let Some(row) = page.last() else { return Ok(read) };
-            last = row.0;
-            read += page.len() as u64;
-        }
+/// Before all numbers of jobs and attempts, also those of a damaged table.
+const BEFORE_ALL: i64 = i64::MIN;
+
+impl Pages<StoredResult> {
+    /// Every result of every attempt.
+    pub fn of_results() -> Self {
+        Self::of::<ResultColumns>(query(RESULTS), &[BEFORE_ALL, BEFORE_ALL], PAGE)
+    }
+}
+
+impl Pages<StoredPayload> {
+    /// Every job's payload.
+    pub fn of_payloads() -> Self {
+        Self::of::<PayloadColumns>(query(PAYLOADS), &[BEFORE_ALL], PAGE)
+    }
+}
+
+impl Pages<StoredState> {
+    /// Every final state.
+    pub fn of_final_states() -> Self {
+        Self::of::<StateColumns>(query(FINAL_STATES), &[BEFORE_ALL], LARGE_PAGE)
+    }
+}
+
+impl Pages<usize> {
+    /// The sizes of all checkpoints in bytes. Only their job can tell whether they are intact; if they are not, it begins anew.
+    pub fn of_checkpoints() -> Self {
+        Self::of::<CheckpointColumns>(query(CHECKPOINTS), &[BEFORE_ALL], LARGE_PAGE)
     }
 }

@@ -1,5 +1,5 @@
 use super::digest::{self, Integrity};
-use super::engine::query;
+use super::engine::{columns, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
@@ -56,7 +56,7 @@ pub struct JobDetails {
 /// because a key may contain wildcards. If $3 is not null, only jobs of that study.
 const JOBS: &str = "
     SELECT j.id, j.key, j.state, j.priority, j.cost, j.batch, j.attempt, j.crashes, j.note, j.started_ms,
-           r.error, r.wall_s, r.finished_ms, r.provenance, p.payload, r.record
+           r.error, r.wall_s, r.finished_ms, r.provenance, p.payload, r.record, r.digest
     FROM jobs AS j
     JOIN payloads AS p ON p.job_id = j.id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
@@ -65,31 +65,30 @@ const JOBS: &str = "
           SELECT 1 FROM study_jobs AS m JOIN studies AS s ON s.id = m.study_id WHERE m.job_id = j.id AND s.name = $3))
     ORDER BY j.key LIMIT $2";
 
-/// Of the attempt that ended.
-const DIGEST: &str = "
-    SELECT r.digest FROM results AS r JOIN jobs AS j ON j.id = r.job_id WHERE j.id = $1 AND r.attempt = j.attempt";
-
 const STUDIES: &str = "
     SELECT name FROM studies WHERE id IN (SELECT study_id FROM study_jobs WHERE job_id = $1) ORDER BY id";
 
-type Columns = (
-    i64,
-    String,
-    String,
-    i64,
-    f64,
-    String,
-    i64,
-    i64,
-    Option<String>,
-    Option<i64>,
-    Option<String>,
-    Option<f64>,
-    Option<i64>,
-    Option<String>,
-    String,
-    Option<String>,
-);
+columns! {
+    struct JobColumns {
+        id: i64,
+        key: String,
+        state: String,
+        priority: i64,
+        cost: f64,
+        batch: String,
+        attempt: i64,
+        crashes: i64,
+        note: Option<String>,
+        started_ms: Option<i64>,
+        error: Option<String>,
+        wall_s: Option<f64>,
+        finished_ms: Option<i64>,
+        provenance: Option<String>,
+        payload: String,
+        record: Option<String>,
+        digest: Option<String>,
+    }
+}
 
 impl Queue {
     /// The jobs whose keys begin with `key`, at most `limit` of them.
@@ -121,57 +120,39 @@ impl Queue {
         limit: u32,
     ) -> Result<Vec<JobDetails>, QueueError> {
         let found = query(JOBS).bind(key).bind(limit).bind(study);
-        let found: Vec<Columns> = found.all(&mut self.connection).await?;
+        let found: Vec<JobColumns> = found.all(&mut self.connection).await?;
         let mut jobs = Vec::with_capacity(found.len());
-        for columns in found {
-            let studies = query(STUDIES).bind(columns.0).scalars(&mut self.connection).await?;
-            let digest: Option<(Option<String>,)> =
-                query(DIGEST).bind(columns.0).optional(&mut self.connection).await?;
-            jobs.push(details(columns, studies, digest.as_ref().and_then(|(digest,)| digest.as_deref()))?);
+        for job in found {
+            let studies = query(STUDIES).bind(job.id).scalars(&mut self.connection).await?;
+            jobs.push(job.with_studies(studies)?);
         }
         Ok(jobs)
     }
 }
 
-fn details(columns: Columns, studies: Vec<String>, digest: Option<&str>) -> Result<JobDetails, QueueError> {
-    let (
-        _,
-        key,
-        state,
-        priority,
-        cost,
-        batch,
-        attempt,
-        crashes,
-        note,
-        started_ms,
-        error,
-        wall_s,
-        finished_ms,
-        provenance,
-        payload,
-        record,
-    ) = columns;
-    let has_result = record.is_some() || error.is_some();
-    let expected = || digest::of_result(&key, record.as_deref(), error.as_deref());
-    let integrity = Integrity::of(digest.filter(|_| has_result), expected);
-    Ok(JobDetails {
-        key,
-        state: JobState::from_column(&state)?,
-        priority,
-        cost,
-        batch,
-        attempt: unsigned(attempt),
-        crashes: unsigned(crashes),
-        note,
-        error,
-        wall_s,
-        started_ms,
-        finished_ms,
-        provenance,
-        payload,
-        record,
-        integrity,
-        studies,
-    })
+impl JobColumns {
+    fn with_studies(self, studies: Vec<String>) -> Result<JobDetails, QueueError> {
+        let has_result = self.record.is_some() || self.error.is_some();
+        let expected = || digest::of_result(&self.key, self.record.as_deref(), self.error.as_deref());
+        let integrity = Integrity::of(self.digest.as_deref().filter(|_| has_result), expected);
+        Ok(JobDetails {
+            key: self.key,
+            state: JobState::from_column(&self.state)?,
+            priority: self.priority,
+            cost: self.cost,
+            batch: self.batch,
+            attempt: unsigned(self.attempt),
+            crashes: unsigned(self.crashes),
+            note: self.note,
+            error: self.error,
+            wall_s: self.wall_s,
+            started_ms: self.started_ms,
+            finished_ms: self.finished_ms,
+            provenance: self.provenance,
+            payload: self.payload,
+            record: self.record,
+            integrity,
+            studies,
+        })
+    }
 }

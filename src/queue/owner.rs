@@ -1,27 +1,29 @@
 //! A worker as the database knows it, and whether its process is alive as far as this process can see.
 
-use super::engine::{Statement, query};
+use super::engine::{Statement, columns, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::process::{self, Presence};
 
-/// A worker that has not ended in order, or that still owns running jobs.
-#[derive(Debug)]
-pub(super) struct Owner {
-    pub id: i64,
-    pub host: String,
-    boot_id: Option<String>,
-    pid_namespace: Option<String>,
-    pub pid: u32,
-    process_start: Option<i64>,
-    pub version: String,
-    pub heartbeat_ms: i64,
-    pub threads: u64,
-    stopping_ms: Option<i64>,
-    ended_ms: Option<i64>,
-    lease_ms: i64,
-    /// Whether the database is on a server. Then two machines may have the same name.
-    is_on_server: bool,
+columns! {
+    /// A worker that has not ended in order, or that still owns running jobs.
+    #[derive(Debug)]
+    pub(super) struct Owner {
+        pub id: i64,
+        pub host: String,
+        boot_id: Option<String>,
+        pid_namespace: Option<String>,
+        pub pid: i64,
+        process_start: Option<i64>,
+        pub version: String,
+        pub heartbeat_ms: i64,
+        pub threads: i64,
+        stopping_ms: Option<i64>,
+        ended_ms: Option<i64>,
+        lease_ms: i64,
+        /// Then two machines may have the same name.
+        is_on_server: bool,
+    }
 }
 
 /// Whether an owner's process is alive.
@@ -39,64 +41,26 @@ const MAX_CLOCK_ERROR_MS: i64 = 24 * 3600 * 1000;
 const OWNERS: Statement = Statement::each(
     "
     SELECT id, host, boot_id, pid_namespace, pid, process_start, version, heartbeat_ms, threads, stopping_ms,
-           ended_ms, lease_ms
+           ended_ms, lease_ms, FALSE AS is_on_server
     FROM workers
     WHERE ended_ms IS NULL OR id IN (SELECT owner FROM jobs INDEXED BY jobs_owner WHERE state = 'running')
     ORDER BY id",
     "
     SELECT id, host, boot_id, pid_namespace, pid, process_start, version, heartbeat_ms, threads, stopping_ms,
-           ended_ms, lease_ms
+           ended_ms, lease_ms, TRUE AS is_on_server
     FROM workers
     WHERE ended_ms IS NULL OR id IN (SELECT owner FROM jobs WHERE state = 'running')
     ORDER BY id",
 );
 
-type Columns = (
-    i64,
-    String,
-    Option<String>,
-    Option<String>,
-    i64,
-    Option<i64>,
-    String,
-    i64,
-    i64,
-    Option<i64>,
-    Option<i64>,
-    i64,
-);
-
 impl Queue {
     /// All workers that may own running jobs.
     pub(super) async fn owners(&mut self) -> Result<Vec<Owner>, QueueError> {
-        let owners: Vec<Columns> = query(OWNERS).all(&mut self.connection).await?;
-        let is_on_server = self.location.path().is_none();
-        Ok(owners.into_iter().map(|columns| Owner::from_columns(columns, is_on_server)).collect())
+        query(OWNERS).all(&mut self.connection).await
     }
 }
 
 impl Owner {
-    fn from_columns(columns: Columns, is_on_server: bool) -> Self {
-        let (id, host, boot_id, pid_namespace, pid, process_start, version, ..) = columns;
-        let (.., heartbeat_ms, threads, stopping_ms, ended_ms, lease_ms) = columns;
-        let (pid, threads) = (pid as u32, threads.unsigned_abs());
-        Self {
-            id,
-            host,
-            boot_id,
-            pid_namespace,
-            pid,
-            process_start,
-            version,
-            heartbeat_ms,
-            threads,
-            stopping_ms,
-            ended_ms,
-            lease_ms,
-            is_on_server,
-        }
-    }
-
     /// A lease that ends after this time is wrong: a clock that had jumped wrote it, and it would hardly ever end.
     pub fn latest_plausible_ms(&self, now_ms: i64) -> i64 {
         now_ms.saturating_add(self.lease_ms).saturating_add(MAX_CLOCK_ERROR_MS)
@@ -120,7 +84,7 @@ impl Owner {
 
     /// Whether its process is on this machine and is stopped. It keeps its jobs, because it may continue.
     pub fn is_stopped(&self) -> bool {
-        self.liveness() == Liveness::Alive && process::is_stopped(self.pid)
+        self.liveness() == Liveness::Alive && process::is_stopped(self.pid as u32)
     }
 
     pub fn liveness(&self) -> Liveness {
@@ -134,7 +98,7 @@ impl Owner {
         if self.pid_namespace != here.2 {
             return Liveness::Unknown;
         }
-        match process::presence(self.pid, start) {
+        match process::presence(self.pid as u32, start) {
             // The process is alive, but its work has ended: it holds no jobs any more.
             Presence::Alive if self.ended_ms.is_some() => Liveness::Gone,
             Presence::Alive => Liveness::Alive,

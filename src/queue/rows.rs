@@ -1,12 +1,12 @@
-use std::ops::ControlFlow;
-
 use super::digest::{self, Integrity};
-use super::engine::{Statement, query};
+use super::engine::{Statement, columns, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
+use super::pages::{Paged, Pages};
 use super::state::JobState;
 use super::unsigned::unsigned;
+use serde::Deserialize;
 
 /// One row of a study with the data of its job that reports need. [`Queue::jobs`] returns more about a single job.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,30 +43,31 @@ pub struct StudyRow {
 /// The short values are one column in JSON, because reading a column costs more than the value in it. (Except the time:
 /// in JSON it would have 15 digits only.)
 ///
-/// If $4 is not null, only rows whose jobs are in that state; if $5 is not null, only those whose jobs have that label. The
-/// payloads are read only if $6 is 1.
+/// If $2 is not null, only rows whose jobs are in that state; if $3 is not null, only those whose jobs have that label. The
+/// payloads are read only if $4 is 1.
 const ROWS: Statement = Statement::each(
     "
-    SELECT json_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note, r.digest), m.parameters, r.record, r.wall_s,
-           CASE WHEN $6 = 1 THEN (SELECT p.payload FROM payloads AS p WHERE p.job_id = j.id) END
+    SELECT json_array(j.key, j.state, r.error, j.attempt, j.crashes, j.note, r.digest) AS short,
+           m.ordinal, m.parameters, r.record, r.wall_s,
+           CASE WHEN $4 = 1 THEN (SELECT p.payload FROM payloads AS p WHERE p.job_id = j.id) END AS payload
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
-    WHERE m.study_id = $1 AND m.ordinal > $2 AND ($4 IS NULL OR j.state = $4)
-      AND ($5 IS NULL OR j.label = $5)
+    WHERE m.study_id = $1 AND m.ordinal > $5 AND ($2 IS NULL OR j.state = $2)
+      AND ($3 IS NULL OR j.label = $3)
     ORDER BY m.ordinal
-    LIMIT $3",
+    LIMIT $6",
     "
-    SELECT json_build_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note, r.digest)::text,
-           m.parameters, r.record, r.wall_s,
-           CASE WHEN $6 = 1 THEN (SELECT p.payload FROM payloads AS p WHERE p.job_id = j.id) END
+    SELECT json_build_array(j.key, j.state, r.error, j.attempt, j.crashes, j.note, r.digest)::text AS short,
+           m.ordinal, m.parameters, r.record, r.wall_s,
+           CASE WHEN $4 = 1 THEN (SELECT p.payload FROM payloads AS p WHERE p.job_id = j.id) END AS payload
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
-    WHERE m.study_id = $1 AND m.ordinal > $2 AND ($4 IS NULL OR j.state = $4)
-      AND ($5 IS NULL OR j.label = $5)
+    WHERE m.study_id = $1 AND m.ordinal > $5 AND ($2 IS NULL OR j.state = $2)
+      AND ($3 IS NULL OR j.label = $3)
     ORDER BY m.ordinal
-    LIMIT $3",
+    LIMIT $6",
 );
 
 /// The first row of study $1 with the job $2.
@@ -81,12 +82,11 @@ const PARAMETERS_OF_JOB: &str = "
 const PARAMETERS: &str = "
     SELECT ordinal, parameters FROM study_jobs WHERE study_id = $1 AND ordinal > $2 ORDER BY ordinal LIMIT $3";
 
-/// Rows that are read at a time. Reading all rows at once would prevent checkpoints of the write-ahead log meanwhile,
-/// and would need memory for all of them.
+/// Rows that are read at a time.
 const PAGE: i64 = 1_000;
 
 /// The number before that of a study's first row.
-const BEFORE_ALL: i64 = -1;
+const BEFORE_ALL: [i64; 1] = [-1];
 
 /// Which rows of a study.
 #[derive(Debug, Clone, Copy)]
@@ -99,48 +99,106 @@ pub enum Rows<'a> {
     Done(&'a str),
 }
 
+columns! {
+    struct RowColumns {
+        short: String,
+        ordinal: i64,
+        parameters: String,
+        record: Option<String>,
+        wall_s: Option<f64>,
+        payload: Option<String>,
+    }
+}
+
+/// The short values, in the order of the list in JSON.
+#[derive(Deserialize)]
+struct Short {
+    key: String,
+    state: String,
+    error: Option<String>,
+    attempt: i64,
+    crashes: i64,
+    note: Option<String>,
+    digest: Option<String>,
+}
+
+impl Paged for RowColumns {
+    type Item = StudyRow;
+
+    fn place(&self) -> Vec<i64> {
+        vec![self.ordinal]
+    }
+
+    fn item(self) -> Result<StudyRow, QueueError> {
+        let Self { short, ordinal, parameters, record, wall_s, payload } = self;
+        let Short { key, state, error, attempt, crashes, note, digest } =
+            serde_json::from_str(&short).map_err(|error| QueueError::Database(error.into()))?;
+        let expected = || digest::of_result(&key, record.as_deref(), error.as_deref());
+        let integrity = Integrity::of(digest.as_deref(), expected);
+        Ok(StudyRow {
+            ordinal: ordinal.unsigned_abs(),
+            key,
+            parameters,
+            state: JobState::from_column(&state)?,
+            record,
+            error,
+            integrity,
+            wall_s,
+            attempt: unsigned(attempt),
+            crashes: unsigned(crashes),
+            note,
+            payload,
+        })
+    }
+}
+
+columns! {
+    struct ParametersOfRow {
+        ordinal: i64,
+        parameters: String,
+    }
+}
+
+impl Paged for ParametersOfRow {
+    type Item = String;
+
+    fn place(&self) -> Vec<i64> {
+        vec![self.ordinal]
+    }
+
+    fn item(self) -> Result<String, QueueError> {
+        Ok(self.parameters)
+    }
+}
+
 impl Queue {
     /// The rows of a study, in the order of its document.
     ///
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.
     pub async fn rows(&mut self, study: &str) -> Result<Vec<StudyRow>, QueueError> {
-        let mut rows = Vec::new();
-        self.each_page(study, Rows::All, |page| {
-            rows.extend(page);
-            ControlFlow::Continue(())
-        })
-        .await?;
-        Ok(rows)
+        let pages = self.pages_of_rows(study, Rows::All).await?;
+        self.all_pages(pages).await
     }
 
-    /// Calls `visit` with the rows of a study, page by page, in the order of its document. `visit` can stop the
-    /// reading.
-    ///
-    /// A change that is made meanwhile is visible in later pages only.
+    /// The rows of a study page by page, in the order of its document.
     ///
     /// # Errors
     /// As [`Queue::rows`].
-    pub async fn each_page(
+    pub async fn pages_of_rows(
         &mut self,
         study: &str,
         which: Rows<'_>,
-        visit: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
-    ) -> Result<(), QueueError> {
-        self.pages(study, which, false, visit).await
+    ) -> Result<Pages<StudyRow>, QueueError> {
+        self.pages(study, which, false).await
     }
 
-    /// As [`Queue::each_page`], with the payloads of the jobs.
+    /// All rows of a study, as [`Queue::pages_of_rows`], with the payloads of the jobs.
     ///
     /// # Errors
     /// As [`Queue::rows`].
-    pub async fn each_page_with_payloads(
-        &mut self,
-        study: &str,
-        which: Rows<'_>,
-        visit: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
-    ) -> Result<(), QueueError> {
-        self.pages(study, which, true, visit).await
+    pub async fn pages_with_payloads(&mut self, study: &str) -> Result<Pages<StudyRow>, QueueError> {
+        self.pages(study, Rows::All, true).await
     }
 
     async fn pages(
@@ -148,27 +206,25 @@ impl Queue {
         study: &str,
         which: Rows<'_>,
         with_payloads: bool,
-        mut visit: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
-    ) -> Result<(), QueueError> {
+    ) -> Result<Pages<StudyRow>, QueueError> {
         let study_id = lookup::require(&mut self.connection, study).await?;
         let (state, label) = match which {
             Rows::All => (None, None),
             Rows::Failed => (Some(JobState::Failed), None),
-            Rows::Done(label) => (Some(JobState::Done), Some(label)),
+            Rows::Done(label) => (Some(JobState::Done), Some(label.to_owned())),
         };
-        // Rows are read after the last one, because the largest number has none after it.
-        let mut last = BEFORE_ALL;
-        loop {
-            let page = query(ROWS).bind(study_id).bind(last).bind(PAGE);
-            let page = page.bind(state.map(JobState::as_str)).bind(label).bind(i64::from(with_payloads));
-            let page: Vec<Columns> = page.all(&mut self.connection).await?;
-            let page = page.into_iter().map(StudyRow::from_columns).collect::<Result<Vec<_>, _>>()?;
-            let Some(row) = page.last() else { return Ok(()) };
-            last = row.ordinal.cast_signed();
-            if visit(page).is_break() {
-                return Ok(());
-            }
-        }
+        let rows = query(ROWS).bind(study_id).bind(state.map(JobState::as_str)).bind(label);
+        Ok(Pages::of::<RowColumns>(rows.bind(i64::from(with_payloads)), &BEFORE_ALL, PAGE))
+    }
+
+    /// The parameters of each row of a study page by page, in the order of its document. Records, which are most of the data of rows,
+    /// are not read.
+    ///
+    /// # Errors
+    /// As [`Queue::rows`].
+    pub async fn pages_of_parameters(&mut self, study: &str) -> Result<Pages<String>, QueueError> {
+        let study_id = lookup::require(&mut self.connection, study).await?;
+        Ok(Pages::of::<ParametersOfRow>(query(PARAMETERS).bind(study_id), &BEFORE_ALL, PAGE))
     }
 
     /// The parameters of a job in a study: those of its first row there, if it has one.
@@ -178,58 +234,5 @@ impl Queue {
     pub async fn parameters(&mut self, study: &str, key: &str) -> Result<Option<String>, QueueError> {
         let found = query(PARAMETERS_OF_JOB).bind(study).bind(key);
         Ok(found.optional(&mut self.connection).await?.map(|(parameters,)| parameters))
-    }
-
-    /// Calls `visit` with the parameters of each row of a study, in the order of its document. It does not read the
-    /// records, which are most of the data of rows.
-    ///
-    /// # Errors
-    /// As [`Queue::rows`].
-    pub async fn each_parameters(
-        &mut self,
-        study: &str,
-        mut visit: impl FnMut(&str),
-    ) -> Result<(), QueueError> {
-        let study_id = lookup::require(&mut self.connection, study).await?;
-        // Rows are read after the last one, because the largest number has none after it.
-        let mut last = BEFORE_ALL;
-        loop {
-            let page = query(PARAMETERS).bind(study_id).bind(last).bind(PAGE);
-            let page: Vec<(i64, String)> = page.all(&mut self.connection).await?;
-            let Some((ordinal, _)) = page.last() else { return Ok(()) };
-            last = *ordinal;
-            for (_, parameters) in &page {
-                visit(parameters);
-            }
-        }
-    }
-}
-
-/// The short values, parameters, record, time and payload.
-type Columns = (String, String, Option<String>, Option<f64>, Option<String>);
-
-impl StudyRow {
-    fn from_columns((short, parameters, record, wall_s, payload): Columns) -> Result<Self, QueueError> {
-        type Short = (u64, String, String, Option<String>, i64, i64, Option<String>, Option<String>);
-        let (ordinal, key, state, error, attempt, crashes, note, digest): Short =
-            serde_json::from_str(&short).map_err(|error| QueueError::Database(error.into()))?;
-        let state = JobState::from_column(&state)?;
-        let expected = || digest::of_result(&key, record.as_deref(), error.as_deref());
-        let integrity = Integrity::of(digest.as_deref(), expected);
-        let (attempt, crashes) = (unsigned(attempt), unsigned(crashes));
-        Ok(Self {
-            ordinal,
-            key,
-            parameters,
-            state,
-            record,
-            error,
-            integrity,
-            wall_s,
-            attempt,
-            crashes,
-            note,
-            payload,
-        })
     }
 }

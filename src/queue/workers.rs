@@ -1,4 +1,4 @@
-use super::engine::query;
+use super::engine::{columns, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::owner::{Liveness, Owner};
@@ -61,7 +61,19 @@ const WORKERS: &str = "
 const RUNNING: &str = "
     SELECT owner, COUNT(*) FROM jobs WHERE state = 'running' GROUP BY owner";
 
-type Columns = (i64, String, i64, i64, i64, Option<f64>, i64, i64, i64);
+columns! {
+    struct WorkerColumns {
+        id: i64,
+        host: String,
+        pid: i64,
+        threads: i64,
+        finished: i64,
+        jobs_per_s: Option<f64>,
+        taken_back: i64,
+        started_ms: i64,
+        heartbeat_ms: i64,
+    }
+}
 
 impl Queue {
     /// The active workers and those from which jobs were taken back. The one that registered first comes first.
@@ -72,27 +84,24 @@ impl Queue {
         let owners = self.owners().await?;
         let now_ms = self.now_ms().await?;
         let running: Vec<(i64, i64)> = query(RUNNING).all(&mut self.connection).await?;
-        let rows: Vec<Columns> = query(WORKERS).all(&mut self.connection).await?;
-        let status =
-            |(id, host, pid, threads, finished, jobs_per_s, taken_back, started_ms, heartbeat_ms)| {
-                let owner = owners.iter().find(|owner| owner.id == id);
-                WorkerStatus {
-                    host,
-                    pid: i64::unsigned_abs(pid) as u32,
-                    threads: i64::unsigned_abs(threads),
-                    presence: owner.map_or(WorkerPresence::Gone, |owner| owner.presence(now_ms)),
-                    running: running
-                        .iter()
-                        .find(|(owner, _)| *owner == id)
-                        .map_or(0, |(_, jobs)| jobs.unsigned_abs()),
-                    finished: i64::unsigned_abs(finished),
-                    jobs_per_s,
-                    taken_back: i64::unsigned_abs(taken_back),
-                    started_ms,
-                    silent_ms: now_ms.saturating_sub(heartbeat_ms),
-                }
-            };
-        Ok(rows.into_iter().map(status).collect())
+        let workers: Vec<WorkerColumns> = query(WORKERS).all(&mut self.connection).await?;
+        let status = |worker: WorkerColumns| {
+            let owner = owners.iter().find(|owner| owner.id == worker.id);
+            let own_jobs = running.iter().find(|(owner, _)| *owner == worker.id);
+            WorkerStatus {
+                host: worker.host,
+                pid: worker.pid.unsigned_abs() as u32,
+                threads: worker.threads.unsigned_abs(),
+                presence: owner.map_or(WorkerPresence::Gone, |owner| owner.presence(now_ms)),
+                running: own_jobs.map_or(0, |(_, jobs)| jobs.unsigned_abs()),
+                finished: worker.finished.unsigned_abs(),
+                jobs_per_s: worker.jobs_per_s,
+                taken_back: worker.taken_back.unsigned_abs(),
+                started_ms: worker.started_ms,
+                silent_ms: now_ms.saturating_sub(worker.heartbeat_ms),
+            }
+        };
+        Ok(workers.into_iter().map(status).collect())
     }
 
     /// What to do about workers that are stopped and hold jobs, a sentence each.
@@ -114,7 +123,7 @@ impl Queue {
         let active = owners.iter().filter(|owner| owner.presence(now_ms) == WorkerPresence::Working);
         Ok(active.fold(ActiveWorkers::default(), |sum, owner| ActiveWorkers {
             workers: sum.workers + 1,
-            threads: sum.threads + owner.threads,
+            threads: sum.threads + owner.threads.unsigned_abs(),
         }))
     }
 }

@@ -1,13 +1,12 @@
 //! Reading all that a database has: results, specifications, final motions and checkpoints.
 
 use super::error::SweepError;
-use super::rows::{StoredParameters, read_record, report_row};
+use super::rows::{for_each_stored, read_record, report_row};
 use super::work::job_key;
-use crate::queue::{Finding, Integrity, Queue, Rows, StudyRow};
+use crate::queue::{Finding, Integrity, Pages, Queue, Rows, StudyRow};
 use crate::spec::JobSpec;
 use std::collections::{BTreeSet, HashSet};
 use std::fmt::Write;
-use std::ops::ControlFlow;
 
 /// Keys that a finding lists.
 const MOST_LISTED: usize = 5;
@@ -61,8 +60,9 @@ type Found = Result<(String, bool), SweepError>;
 async fn results(queue: &mut Queue) -> Found {
     let (mut read, mut without, mut damaged, mut unreadable) =
         (0_u64, 0_u64, Keys::default(), Keys::default());
-    queue
-        .each_result(|result| {
+    let mut pages = Pages::of_results();
+    while let Some(page) = queue.next_page(&mut pages).await? {
+        for result in page {
             read += 1;
             without += u64::from(result.integrity == Integrity::WithoutDigest);
             if result.integrity == Integrity::Damaged {
@@ -70,8 +70,8 @@ async fn results(queue: &mut Queue) -> Found {
             } else if result.record.is_some_and(|record| read_record(&record).is_err()) {
                 unreadable.add(&result.key);
             }
-        })
-        .await?;
+        }
+    }
     let mut text = format!("{read} read");
     if without > 0 {
         let _ = write!(text, ", {without} without a digest (an earlier version stored them)");
@@ -89,28 +89,27 @@ async fn results(queue: &mut Queue) -> Found {
 /// keys, the others were changed.
 async fn specifications(queue: &mut Queue) -> Found {
     let (mut read, mut unreadable, mut others) = (0_u64, Keys::default(), HashSet::new());
-    queue
-        .each_payload(|job| {
+    let mut pages = Pages::of_payloads();
+    while let Some(page) = queue.next_page(&mut pages).await? {
+        for job in page {
             read += 1;
             match job.payload.as_deref().map(serde_json::from_str::<JobSpec>) {
                 Some(Ok(spec)) if job_key(&spec) == job.key => {}
                 Some(Ok(_)) => _ = others.insert(job.key),
                 _ => unreadable.add(&job.key),
             }
-        })
-        .await?;
+        }
+    }
     let mut changed = Keys::default();
     let mut of_others = 0;
     if !others.is_empty() {
         let mut of_studies = HashSet::new();
         for study in queue.studies().await? {
             let mut keys = BTreeSet::new();
-            queue
-                .each_page(&study.name, Rows::All, |page| {
-                    keys.extend(page.into_iter().map(|row| row.key));
-                    ControlFlow::Continue(())
-                })
-                .await?;
+            let mut pages = queue.pages_of_rows(&study.name, Rows::All).await?;
+            while let Some(page) = queue.next_page(&mut pages).await? {
+                keys.extend(page.into_iter().map(|row| row.key));
+            }
             let strange = keys.iter().filter(|key| others.contains(*key)).count();
             if strange < keys.len() {
                 for key in keys.iter().filter(|key| others.contains(*key)) {
@@ -147,12 +146,11 @@ async fn parameters(queue: &mut Queue) -> Found {
     let (mut read, mut damaged) = (0_u64, Vec::new());
     for study in queue.studies().await? {
         let mut wrong = 0_u64;
-        queue
-            .each_parameters(&study.name, |text| {
-                read += 1;
-                wrong += u64::from(serde_json::from_str::<StoredParameters>(text).is_err());
-            })
-            .await?;
+        for_each_stored(queue, &study.name, |stored| {
+            read += 1;
+            wrong += u64::from(stored.is_err());
+        })
+        .await?;
         if wrong > 0 {
             damaged.push(format!("{wrong} of {}", study.name));
         }
@@ -169,16 +167,17 @@ async fn parameters(queue: &mut Queue) -> Found {
 
 async fn motions(queue: &mut Queue) -> Found {
     let (mut read, mut without, mut damaged) = (0_u64, 0_u64, Keys::default());
-    queue
-        .each_final_state(|key, integrity| {
+    let mut pages = Pages::of_final_states();
+    while let Some(page) = queue.next_page(&mut pages).await? {
+        for state in page {
             read += 1;
-            match integrity {
+            match state.integrity {
                 Integrity::Intact => {}
                 Integrity::WithoutDigest => without += 1,
-                Integrity::Damaged => damaged.add(&key),
+                Integrity::Damaged => damaged.add(&state.key),
             }
-        })
-        .await?;
+        }
+    }
     let mut text = format!("{read} read");
     if without > 0 {
         let _ = write!(text, ", {without} without a digest (an earlier version stored them)");
@@ -190,7 +189,7 @@ async fn motions(queue: &mut Queue) -> Found {
 }
 
 async fn checkpoints(queue: &mut Queue) -> Found {
-    let read = queue.read_checkpoints().await?;
+    let read = queue.all_pages(Pages::of_checkpoints()).await?.len();
     Ok((format!("{read} read; their jobs check them, and begin anew if they are damaged"), false))
 }
 
@@ -200,24 +199,20 @@ async fn checkpoints(queue: &mut Queue) -> Found {
 /// If the database has no such study or cannot be read.
 pub async fn unreadable_jobs(queue: &mut Queue, study: &str) -> Result<Vec<String>, SweepError> {
     let mut damaged = HashSet::new();
-    queue
-        .each_final_state(|key, integrity| {
-            if integrity == Integrity::Damaged {
-                damaged.insert(key);
-            }
-        })
-        .await?;
+    let mut pages = Pages::of_final_states();
+    while let Some(page) = queue.next_page(&mut pages).await? {
+        let found = page.into_iter().filter(|state| state.integrity == Integrity::Damaged);
+        damaged.extend(found.map(|state| state.key));
+    }
     let mut keys = Vec::new();
     let mut seen = HashSet::new();
     let mut is_wanted = |row: &StudyRow| {
         let is_unreadable = report_row(study, row).is_ok_and(|row| row.unreadable().is_some());
         (is_unreadable || damaged.contains(&row.key)) && seen.insert(row.key.clone())
     };
-    queue
-        .each_page(study, Rows::All, |page| {
-            keys.extend(page.into_iter().filter(&mut is_wanted).map(|row| row.key));
-            ControlFlow::Continue(())
-        })
-        .await?;
+    let mut pages = queue.pages_of_rows(study, Rows::All).await?;
+    while let Some(page) = queue.next_page(&mut pages).await? {
+        keys.extend(page.into_iter().filter(&mut is_wanted).map(|row| row.key));
+    }
     Ok(keys)
 }

@@ -1,7 +1,7 @@
 //! One row per job, for other programs.
 
 use super::error::SweepError;
-use super::rows::{add_names, for_each_row, for_each_row_with_inputs};
+use super::rows::{StoredParameters, for_each_row, for_each_row_with_inputs, for_each_stored};
 use crate::publish::table::{Format, Head};
 use crate::queue::{Queue, Rows};
 use crate::report::columns::{self, ExportColumn};
@@ -89,7 +89,11 @@ fn input_columns() -> Vec<Head> {
 async fn grid_names(queue: &mut Queue, studies: &[String]) -> Result<Vec<String>, SweepError> {
     let mut names = IndexSet::new();
     for study in studies {
-        add_names(queue, study, &mut names).await?;
+        // Parameters that cannot be read are an error when their row is converted.
+        let own =
+            |stored: serde_json::Result<StoredParameters>| stored.map_or_else(|_| Vec::new(), |own| own.grid);
+        for_each_stored(queue, study, |stored| names.extend(own(stored).into_iter().map(|(name, _)| name)))
+            .await?;
     }
     Ok(names.into_iter().collect())
 }

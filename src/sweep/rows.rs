@@ -3,15 +3,13 @@
 use super::discretisation::MeasuredErrors;
 use super::error::SweepError;
 use crate::analysis::JobRecord;
-use crate::queue::{Integrity, JobState, Queue, Rows, StudyRow};
+use crate::queue::{Integrity, JobState, Pages, Queue, Rows, StudyRow};
 use crate::report::{Discretisation, JobNumerics, JobRow, Parameters, RowState};
 use crate::spec::JobSpec;
 use crate::study::{Job, Parameter, input_parameters, inputs};
-use indexmap::IndexSet;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::ops::ControlFlow;
 
 /// What is stored with the row of a job, so that tables need not read the payload.
 #[derive(Debug, Serialize, Deserialize)]
@@ -51,27 +49,42 @@ pub fn parameters_of(job: &Job) -> Parameters {
     Parameters::new(scene.disk.omega_rpm, scene.contact.mu, job.parameters.clone())
 }
 
+/// Calls `visit` with what `read` makes of each row of some pages, in their order, up to the first error. A page is read on all threads.
+/// The records of a whole study as text would take several times the memory of the rows, so this never holds more than a page of them.
+async fn visit_pages<R: Sync, T: Send>(
+    queue: &mut Queue,
+    mut pages: Pages<R>,
+    read: impl Fn(&R) -> Result<T, SweepError> + Sync,
+    mut visit: impl FnMut(T) -> Result<(), SweepError>,
+) -> Result<(), SweepError> {
+    while let Some(page) = queue.next_page(&mut pages).await? {
+        let read: Vec<_> = page.par_iter().map(&read).collect();
+        read.into_iter().try_for_each(|row| row.and_then(&mut visit))?;
+    }
+    Ok(())
+}
+
 /// Reads all rows of a study, in the order of the grid, with what is known about the error of their discretisation.
 ///
 /// # Errors
 /// If the database has no such study or cannot be read.
 pub async fn read_rows(queue: &mut Queue, study: &str) -> Result<Vec<JobRow>, SweepError> {
     let errors = MeasuredErrors::new();
-    let mut read = Ok(());
     let mut rows = Vec::new();
-    let convert = |row: &StudyRow| {
+    let read = |row: &StudyRow| {
         // A specification of another version that this one cannot read has no known error.
-        let spec = job_spec(&row.key, row.payload.as_deref().unwrap_or_default()).ok();
+        let spec = spec_of_row(row).ok();
         let has_one_mu = spec.as_ref().is_some_and(|spec| spec.scene.contact.law.has_one_mu());
         let discretisation = spec.map_or(Discretisation::NotMeasured, |spec| errors.of(&spec));
         Ok(JobRow { has_one_mu, discretisation, ..report_row(study, row)? })
     };
-    let visit_page = page_visitor(&mut read, convert, |row| {
+    let pages = queue.pages_with_payloads(study).await?;
+    visit_pages(queue, pages, read, |row| {
         rows.push(row);
         Ok(())
-    });
-    queue.each_page_with_payloads(study, Rows::All, visit_page).await?;
-    read.map(|()| rows)
+    })
+    .await?;
+    Ok(rows)
 }
 
 /// Calls `visit` with the specification of the job of each row of a study, as it was stored when the job was submitted.
@@ -81,19 +94,20 @@ pub(super) async fn for_each_spec(
     study: &str,
     mut visit: impl FnMut(&JobSpec),
 ) -> Result<(), SweepError> {
-    let mut read = Ok(());
-    let convert = |row: &StudyRow| Ok(job_spec(&row.key, row.payload.as_deref().unwrap_or_default()).ok());
-    let visit_page = page_visitor(&mut read, convert, |spec| {
-        spec.iter().for_each(&mut visit);
-        Ok(())
-    });
-    queue.each_page_with_payloads(study, Rows::All, visit_page).await?;
-    read
+    let pages = queue.pages_with_payloads(study).await?;
+    visit_pages(
+        queue,
+        pages,
+        |row| Ok(spec_of_row(row).ok()),
+        |spec| {
+            spec.iter().for_each(&mut visit);
+            Ok(())
+        },
+    )
+    .await
 }
 
-/// Calls `visit` with the ordinal and the content of each of `which` rows of a study, up to the first error. The records
-/// of a whole study as text would take several times the memory of the rows, so this never holds more than a page of
-/// them.
+/// Calls `visit` with the ordinal and the content of each of `which` rows of a study, up to the first error.
 ///
 /// # Errors
 /// As [`read_rows`], and those of `visit`.
@@ -103,11 +117,9 @@ pub async fn for_each_row(
     which: Rows<'_>,
     mut visit: impl FnMut(u64, JobRow) -> Result<(), SweepError>,
 ) -> Result<(), SweepError> {
-    let mut visited = Ok(());
-    let convert = |row: &StudyRow| Ok((row.ordinal, report_row(study, row)?));
-    let visit_page = page_visitor(&mut visited, convert, |(ordinal, row)| visit(ordinal, row));
-    queue.each_page(study, which, visit_page).await?;
-    visited
+    let pages = queue.pages_of_rows(study, which).await?;
+    let read = |row: &StudyRow| Ok((row.ordinal, report_row(study, row)?));
+    visit_pages(queue, pages, read, |(ordinal, row)| visit(ordinal, row)).await
 }
 
 /// As [`for_each_row`] for all rows, with the values of all [`inputs`](JobRow::inputs) of each job, in the order of
@@ -120,10 +132,9 @@ pub async fn for_each_row_with_inputs(
     study: &str,
     visit: impl FnMut(JobRow) -> Result<(), SweepError>,
 ) -> Result<(), SweepError> {
-    let mut visited = Ok(());
-    let convert = |row: &StudyRow| {
+    let read = |row: &StudyRow| {
         let mut own = report_row(study, row)?;
-        own.inputs = match job_spec(&row.key, row.payload.as_deref().unwrap_or_default()) {
+        own.inputs = match spec_of_row(row) {
             Ok(spec) => input_values(&spec),
             // Without its inputs the row would be that of an unknown scene.
             Err(error) => {
@@ -133,22 +144,28 @@ pub async fn for_each_row_with_inputs(
         };
         Ok(own)
     };
-    let visit_page = page_visitor(&mut visited, convert, visit);
-    queue.each_page_with_payloads(study, Rows::All, visit_page).await?;
-    visited
+    let pages = queue.pages_with_payloads(study).await?;
+    visit_pages(queue, pages, read, visit).await
 }
 
-/// Passes the rows of a page to `visit` as `convert` makes them, up to the first error, which it puts into `visited`.
-fn page_visitor<T: Send>(
-    visited: &mut Result<(), SweepError>,
-    convert: impl Fn(&StudyRow) -> Result<T, SweepError> + Sync,
-    mut visit: impl FnMut(T) -> Result<(), SweepError>,
-) -> impl FnMut(Vec<StudyRow>) -> ControlFlow<()> {
-    move |page| {
-        let rows: Vec<_> = page.par_iter().map(&convert).collect();
-        *visited = rows.into_iter().try_for_each(|row| row.and_then(&mut visit));
-        if visited.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    }
+/// Calls `visit` with what is stored as the parameters of each row of a study, or with why it cannot be read.
+pub(super) async fn for_each_stored(
+    queue: &mut Queue,
+    study: &str,
+    mut visit: impl FnMut(serde_json::Result<StoredParameters>),
+) -> Result<(), SweepError> {
+    let pages = queue.pages_of_parameters(study).await?;
+    let read = |text: &String| Ok(serde_json::from_str(text));
+    visit_pages(queue, pages, read, |stored| {
+        visit(stored);
+        Ok(())
+    })
+    .await
+}
+
+/// The job of a row that was read with its payload.
+fn spec_of_row(row: &StudyRow) -> Result<JobSpec, SweepError> {
+    job_spec(&row.key, row.payload.as_deref().unwrap_or_default())
 }
 
 /// The job that a payload of the database describes.
@@ -165,22 +182,6 @@ fn input_values(spec: &JobSpec) -> Vec<Value> {
         own.map_or(Value::Null, |input| input.value.clone())
     };
     input_parameters().map(value).collect()
-}
-
-/// Adds to `names` those of a study's grid parameters, in the order in which they first appear.
-pub(super) async fn add_names(
-    queue: &mut Queue,
-    study: &str,
-    names: &mut IndexSet<String>,
-) -> Result<(), SweepError> {
-    // Parameters that cannot be read are an error when their row is converted.
-    let read = queue.each_parameters(study, |text| {
-        if let Ok(StoredParameters { grid, .. }) = serde_json::from_str(text) {
-            names.extend(grid.into_iter().map(|(name, _)| name));
-        }
-    });
-    read.await?;
-    Ok(())
 }
 
 /// A row of the queue as a row of a report, without what only the specification says. A result that cannot be read is a state of

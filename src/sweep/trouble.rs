@@ -1,7 +1,7 @@
 //! The jobs of a study that failed or did not become periodic.
 
 use super::error::SweepError;
-use super::rows::{StoredParameters, for_each_row};
+use super::rows::{for_each_row, for_each_stored};
 use crate::analysis::Outcome;
 use crate::queue::{Queue, Rows};
 use crate::report::JobRow;
@@ -26,12 +26,11 @@ impl Trouble {
     pub async fn read(queue: &mut Queue, study: &str) -> Result<Self, SweepError> {
         let mut grid = Grid::default();
         let mut unreadable = None;
-        let read =
-            queue.each_parameters(study, |text| match serde_json::from_str::<StoredParameters>(text) {
-                Ok(stored) => grid.add(&stored.into_parameters()),
-                Err(error) => _ = unreadable.get_or_insert(error),
-            });
-        read.await?;
+        for_each_stored(queue, study, |stored| match stored {
+            Ok(stored) => grid.add(&stored.into_parameters()),
+            Err(error) => _ = unreadable.get_or_insert(error),
+        })
+        .await?;
         if let Some(reason) = unreadable {
             return Err(SweepError::Unreadable { subject: study.to_owned(), what: "parameters", reason });
         }

@@ -12,14 +12,14 @@ use super::connection::Connection;
 use super::statement::Statement;
 use crate::queue::error::QueueError;
 
-/// The types that rows of both databases can be read as: tuples of `i64`, `f64`, `String`, `Vec<u8>` and options of
-/// these. (PostgreSQL has no unsigned integers.)
+/// The types that rows of both databases can be read as: tuples, and structs (`columns`), of `i64`, `f64`, `String`, `Vec<u8>` and
+/// options of these. (PostgreSQL has no unsigned integers.)
 #[cfg(feature = "postgres")]
 pub trait Columns: Send + Unpin + for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> {}
 #[cfg(feature = "postgres")]
 impl<T: Send + Unpin + for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow>> Columns for T {}
 
-/// The types that rows can be read as: tuples of `i64`, `f64`, `String`, `Vec<u8>` and options of these.
+/// The types that rows can be read as: tuples, and structs (`columns`), of `i64`, `f64`, `String`, `Vec<u8>` and options of these.
 #[cfg(not(feature = "postgres"))]
 pub trait Columns: Send + Unpin + for<'r> FromRow<'r, SqliteRow> {}
 #[cfg(not(feature = "postgres"))]
@@ -54,7 +54,7 @@ type ReadRow<'r> = dyn FnMut(Row) -> Result<(), sqlx::Error> + Send + 'r;
 
 /// A statement that runs. It has no type parameters, because a generic future is compiled again for each use, and again
 /// in each program that uses the library.
-type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, QueueError>> + Send + 'a>>;
+pub type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, QueueError>> + Send + 'a>>;
 
 /// A parameter of a statement.
 #[derive(Debug, Clone)]
@@ -243,6 +243,12 @@ impl From<String> for Value<'_> {
 
 impl<'q> From<Option<&'q str>> for Value<'q> {
     fn from(value: Option<&'q str>) -> Self {
+        Self::Text(value.map(Into::into))
+    }
+}
+
+impl From<Option<String>> for Value<'_> {
+    fn from(value: Option<String>) -> Self {
         Self::Text(value.map(Into::into))
     }
 }

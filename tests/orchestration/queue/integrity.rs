@@ -1,7 +1,7 @@
 //! What is stored is as it was stored, and what cannot be is no end of the queue.
 
 use tribosweep::queue::{
-    FinishedOutcome, Integrity, JobState, Queue, QueueError, Scope, StoredResult, Worker, examine,
+    FinishedOutcome, Integrity, JobState, Pages, Queue, QueueError, Scope, Worker, examine,
 };
 
 use crate::support::{Engine, Sandbox, claim, counts, done, failed, finish, job, of, study};
@@ -41,8 +41,7 @@ async fn ended(sandbox: &Sandbox) -> Queue {
 
 async fn integrities(queue: &mut Queue) -> Vec<Integrity> {
     let rows = queue.rows("a").await.unwrap().into_iter().map(|row| row.integrity).collect::<Vec<_>>();
-    let mut results: Vec<StoredResult> = Vec::new();
-    queue.each_result(|result| results.push(result)).await.unwrap();
+    let results = queue.all_pages(Pages::of_results()).await.unwrap();
     assert!(results.iter().all(|result| result.counts));
     assert_eq!(rows, results.into_iter().map(|result| result.integrity).collect::<Vec<_>>());
     for (key, integrity) in [("x", rows[0]), ("y", rows[1])] {
@@ -122,9 +121,8 @@ async fn rows_that_cannot_be(sandbox: &Sandbox) {
     sandbox.run("UPDATE study_jobs SET ordinal = 9223372036854775807 WHERE ordinal = 1").await;
     sandbox.run("UPDATE jobs SET attempt = -5, crashes = -1 WHERE key = 'p'").await;
     assert_eq!(queue.rows("a").await.unwrap().len(), 2);
-    let mut parameters = 0;
-    queue.each_parameters("a", |_| parameters += 1).await.unwrap();
-    assert_eq!(parameters, 2);
+    let pages = queue.pages_of_parameters("a").await.unwrap();
+    assert_eq!(queue.all_pages(pages).await.unwrap().len(), 2);
     let elsewhere = sandbox.another();
     assert_eq!(elsewhere.open().await.absorb(&mut queue, Some("a")).await.unwrap().rows, 2);
     assert_eq!(queue.rows("b").await.unwrap()[0].attempt, 0);

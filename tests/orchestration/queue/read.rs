@@ -1,7 +1,5 @@
 //! What reports and the progress display read.
 
-use std::ops::ControlFlow;
-
 use tribosweep::queue::{
     Claim, Integrity, JobState, Queue, QueueError, Rows, Scope, StudyDocument, StudyRow, StudySummary,
 };
@@ -17,7 +15,7 @@ on_both_databases! {
     remaining_cost,
     an_unknown_study_is_an_error_with_the_known_ones,
     rows_are_found_by_their_label,
-    reading_can_be_stopped,
+    pages_follow_each_other,
 }
 
 /// Protects: the list of studies is in the order of submission, each with its own counts.
@@ -90,12 +88,8 @@ async fn rows_are_read_with_their_payloads(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["y", "x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
-    let mut rows = Vec::new();
-    let visit = |page: Vec<StudyRow>| {
-        rows.extend(page);
-        ControlFlow::Continue(())
-    };
-    queue.each_page_with_payloads("a", Rows::All, visit).await.unwrap();
+    let pages = queue.pages_with_payloads("a").await.unwrap();
+    let mut rows = queue.all_pages(pages).await.unwrap();
     let payloads: Vec<_> = rows.iter_mut().map(|row| row.payload.take().unwrap()).collect();
     assert_eq!(payloads, ["payload of y", "payload of x", "payload of y"]);
     assert_eq!(rows, queue.rows("a").await.unwrap());
@@ -169,13 +163,8 @@ async fn an_unknown_study_is_an_error_with_the_known_ones(sandbox: &Sandbox) {
 
 /// The ordinals of the rows of study `a`.
 async fn ordinals_of(queue: &mut Queue, which: Rows<'_>) -> Vec<u64> {
-    let mut found = Vec::new();
-    let visit = |page: Vec<StudyRow>| {
-        found.extend(page.iter().map(|row| row.ordinal));
-        ControlFlow::Continue(())
-    };
-    queue.each_page("a", which, visit).await.unwrap();
-    found
+    let pages = queue.pages_of_rows("a", which).await.unwrap();
+    queue.all_pages(pages).await.unwrap().iter().map(|row| row.ordinal).collect()
 }
 
 /// Protects: rows are found by their label, and only if their job is done.
@@ -195,22 +184,21 @@ async fn rows_are_found_by_their_label(sandbox: &Sandbox) {
     assert_eq!(ordinals_of(&mut queue, Rows::All).await, [0, 1, 2, 3, 4]);
 }
 
-/// Protects: the reader of a study can stop before the end.
-async fn reading_can_be_stopped(sandbox: &Sandbox) {
+/// Protects: the pages of a long study have all its rows, each once and in order.
+async fn pages_follow_each_other(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let names: Vec<String> = (0..2_500).map(|number| format!("job {number}")).collect();
     queue.submit(&study("a", &names.iter().map(String::as_str).collect::<Vec<_>>())).await.unwrap();
-    for (stop, seen) in [(true, 1_000), (false, 2_500)] {
-        let mut rows = 0;
-        let visit = |page: Vec<StudyRow>| {
-            rows += page.len();
-            if stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        };
-        queue.each_page("a", Rows::All, visit).await.unwrap();
-        assert_eq!(rows, seen);
+    let mut pages = queue.pages_of_rows("a", Rows::All).await.unwrap();
+    let (mut sizes, mut ordinals) = (Vec::new(), Vec::new());
+    while let Some(page) = queue.next_page(&mut pages).await.unwrap() {
+        sizes.push(page.len());
+        ordinals.extend(page.iter().map(|row| row.ordinal));
     }
-    let mut parameters = Vec::new();
-    queue.each_parameters("a", |text| parameters.push(text.to_owned())).await.unwrap();
+    assert_eq!(sizes, [1_000, 1_000, 500]);
+    assert!(ordinals.into_iter().eq(0..2_500));
+    let pages = queue.pages_of_parameters("a").await.unwrap();
+    let parameters = queue.all_pages(pages).await.unwrap();
     assert_eq!(parameters.len(), 2_500);
     assert_eq!(parameters[2_499], "parameters of job 2499");
 }
