@@ -25,6 +25,7 @@
 mod above_band;
 pub mod batch;
 pub mod branches;
+mod build;
 mod checkpoint;
 pub mod continuation;
 pub mod cycles;
@@ -50,6 +51,7 @@ mod window;
 mod workload;
 
 pub use above_band::AboveBand;
+pub use build::Build;
 pub use checkpoint::Unreadable;
 pub use drive::{drive, drive_at};
 pub use error::JobError;

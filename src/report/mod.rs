@@ -64,7 +64,7 @@ pub use measurement::{MeasuredValue, Measurement};
 pub use parameters::assignment;
 pub use parameters::{Parameters, parameter_names};
 pub use program::chart as program_chart;
-pub use provenance::{BuildInfo, Provenance, ResultGroup};
+pub use provenance::{Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};
 pub use scalar::{FREQUENCY, MU_STAR, SCALARS, Scalar};
 pub use stability::{Along, PAGE as STABILITY_PAGE, SHAPES, modes_table, thresholds_table, write_stability};

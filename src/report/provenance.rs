@@ -1,5 +1,7 @@
 //! Where a study and its results come from.
 
+use crate::analysis::Build;
+
 /// A study as it was submitted, and the programs and machines that its results come from.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Provenance {
@@ -14,8 +16,8 @@ pub struct Provenance {
 /// Results of one program on one machine.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ResultGroup {
-    /// The program and the machine; none for jobs whose process died.
-    pub build: Option<BuildInfo>,
+    /// The program and the machine, without the process; none for jobs whose process died.
+    pub build: Option<Build>,
     /// Number of results.
     pub jobs: u64,
     /// When the first of them was finished, in milliseconds since 1970-01-01 UTC.
@@ -24,41 +26,16 @@ pub struct ResultGroup {
     pub last_ms: i64,
 }
 
-/// A program on a machine. Several processes of it are the same here.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct BuildInfo {
-    /// Version of the program.
-    pub version: String,
-    /// The commit it was built from; it ends with `+modified` if the sources differed from that commit.
-    pub commit: String,
-    /// The machine's name.
-    pub host: String,
-    /// The processor's name, if it is known.
-    pub cpu: Option<String>,
-    /// Processor architecture and operating system.
-    pub platform: String,
-    /// Vector instructions.
-    pub vectors: String,
-    /// Number of threads.
-    pub threads: u64,
-}
-
-impl BuildInfo {
-    /// Version and commit in words.
-    pub(super) fn program(&self) -> String {
-        format!("{} ({})", self.version, self.commit)
-    }
-}
-
 impl Provenance {
-    /// Merges groups of the same program on the same machine.
+    /// Merges groups of the same program on the same machine. Several processes of it are the same here.
     pub fn grouped(
         document: String,
         submitted_ms: i64,
         parts: impl IntoIterator<Item = ResultGroup>,
     ) -> Self {
         let mut groups: Vec<ResultGroup> = Vec::new();
-        for part in parts {
+        for mut part in parts {
+            part.build = part.build.map(|build| Build { pid: 0, ..build });
             match groups.iter_mut().find(|group| group.build == part.build) {
                 Some(group) => {
                     group.jobs += part.jobs;
@@ -75,19 +52,19 @@ impl Provenance {
     /// Sentences that say why the results may not be comparable to the last bit: they come from several builds or
     /// machines, or from sources that are in no commit.
     pub(super) fn warnings(&self) -> Vec<String> {
-        let distinct = |key: fn(&BuildInfo) -> String| {
+        let distinct = |key: fn(&Build) -> String| {
             let mut found: Vec<String> = self.builds().map(key).collect();
             found.sort();
             found.dedup();
             found.len()
         };
         let mut warnings = Vec::new();
-        let programs = distinct(BuildInfo::program);
+        let programs = distinct(|build| format!("{} ({})", build.version, build.commit));
         if programs > 1 {
             warnings.push(format!("The results come from {programs} builds of the program."));
         }
         let machines = distinct(|build| {
-            format!("{}\n{:?}\n{}\n{}", build.host, build.cpu, build.platform, build.vectors)
+            format!("{}\n{:?}\n{}\n{}", build.host, build.cpu, build.platform(), build.vectors)
         });
         if machines > 1 {
             warnings.push(format!(
@@ -100,7 +77,7 @@ impl Provenance {
         warnings
     }
 
-    fn builds(&self) -> impl Iterator<Item = &BuildInfo> {
+    fn builds(&self) -> impl Iterator<Item = &Build> {
         self.groups.iter().filter_map(|group| group.build.as_ref())
     }
 }

@@ -2,21 +2,7 @@
 
 use super::error::SweepError;
 use crate::queue::{ProvenanceGroup, Queue};
-use crate::report::{BuildInfo, Provenance, ResultGroup};
-use serde::Deserialize;
-
-/// The part of a worker's provenance that reports show.
-#[derive(Debug, Deserialize)]
-struct StoredProvenance {
-    version: String,
-    commit: String,
-    host: String,
-    cpu: Option<String>,
-    architecture: String,
-    system: String,
-    vectors: String,
-    threads: u64,
-}
+use crate::report::{Provenance, ResultGroup};
 
 /// The documents of the studies and the provenance of their results; `None` if they have been removed meanwhile.
 pub(super) async fn read(queue: &mut Queue, studies: &[String]) -> Result<Option<Provenance>, SweepError> {
@@ -31,20 +17,9 @@ pub(super) async fn read(queue: &mut Queue, studies: &[String]) -> Result<Option
 }
 
 fn report_group(group: &ProvenanceGroup) -> ResultGroup {
-    // A provenance that cannot be read counts as unknown.
-    let stored: Option<StoredProvenance> =
-        group.provenance.as_deref().and_then(|text| serde_json::from_str(text).ok());
-    let build = stored.map(|stored| BuildInfo {
-        version: stored.version,
-        commit: stored.commit,
-        host: stored.host,
-        cpu: stored.cpu,
-        platform: [stored.architecture, stored.system].join(" "),
-        vectors: stored.vectors,
-        threads: stored.threads,
-    });
     ResultGroup {
-        build,
+        // A provenance that cannot be read counts as unknown.
+        build: group.provenance.as_deref().and_then(|text| serde_json::from_str(text).ok()),
         jobs: group.jobs,
         first_ms: group.first_finished_ms,
         last_ms: group.last_finished_ms,

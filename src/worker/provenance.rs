@@ -1,8 +1,8 @@
 //! The provenance of results: program, commit, machine, vector instructions, threads.
 
+use crate::analysis::Build;
 use crate::queue::Worker;
 use fearless_simd::Level;
-use serde_json::json;
 
 /// The program's version.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -22,19 +22,19 @@ pub fn program() -> String {
 /// This process as a worker, with the provenance of its results as JSON.
 pub fn worker(threads: usize) -> Worker {
     let mut worker = Worker::this_process(threads, VERSION, "");
-    let provenance = json!({
-        "program": "tribosweep",
-        "version": VERSION,
-        "commit": COMMIT,
-        "host": worker.host,
-        "cpu": cpu_model(),
-        "architecture": std::env::consts::ARCH,
-        "system": std::env::consts::OS,
-        "vectors": vectors(),
-        "threads": threads,
-        "pid": worker.pid,
-    });
-    worker.provenance = provenance.to_string();
+    let build = Build {
+        program: "tribosweep".to_owned(),
+        version: VERSION.to_owned(),
+        commit: COMMIT.to_owned(),
+        host: worker.host.clone(),
+        cpu: cpu_model(),
+        architecture: std::env::consts::ARCH.to_owned(),
+        system: std::env::consts::OS.to_owned(),
+        vectors: vectors(),
+        threads: threads as u64,
+        pid: worker.pid,
+    };
+    worker.provenance = serde_json::to_string(&build).expect("texts and whole numbers have a JSON form");
     worker
 }
 
@@ -59,19 +59,16 @@ mod tests {
     /// Protects: the provenance names version, commit, threads, host and the bare name of the vector instructions.
     #[test]
     fn provenance_is_complete() {
-        let provenance: serde_json::Value = serde_json::from_str(&worker(3).provenance).unwrap();
-        assert_eq!(
-            (provenance["version"].as_str(), provenance["threads"].as_u64()),
-            (Some(VERSION), Some(3))
-        );
-        let commit = provenance["commit"].as_str().unwrap().trim_end_matches("+modified").to_owned();
+        let Build { version, commit, host, vectors, threads, .. } =
+            serde_json::from_str(&worker(3).provenance).unwrap();
+        assert_eq!((version.as_str(), threads), (VERSION, 3));
+        let commit = commit.trim_end_matches("+modified");
         let is_hash = commit.len() == 40 && commit.chars().all(|c| c.is_ascii_hexdigit());
         assert!(is_hash || commit == "unknown", "{commit}");
-        let vectors = provenance["vectors"].as_str().unwrap();
         assert!(
             !vectors.is_empty() && vectors.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'),
             "{vectors}"
         );
-        assert!(!provenance["host"].as_str().unwrap().is_empty());
+        assert!(!host.is_empty());
     }
 }

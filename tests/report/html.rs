@@ -4,9 +4,9 @@ use crate::charts::drawings;
 use crate::synthetic::{failed, partial_study, periodic, report, row, with};
 use std::fs;
 use std::sync::Arc;
+use tribosweep_mechanics::analysis::Build;
 use tribosweep_output::report::{
-    BuildInfo, Discretisation, JobRow, MeshError, Provenance, Report, ResultGroup, RowState, inspections,
-    write,
+    Discretisation, JobRow, MeshError, Provenance, Report, ResultGroup, RowState, inspections, write,
 };
 
 fn page_of(report: &Report) -> String {
@@ -145,14 +145,17 @@ fn only_a_page_that_changes_refreshes() {
 }
 
 fn group(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> ResultGroup {
-    let build = BuildInfo {
+    let build = Build {
+        program: "tribosweep".to_owned(),
         version: "0.1.0".to_owned(),
         commit: commit.to_owned(),
         host: host.to_owned(),
         cpu: Some("Quick 9000".to_owned()),
-        platform: "x86_64 linux".to_owned(),
+        architecture: "x86_64".to_owned(),
+        system: "linux".to_owned(),
         vectors: "Avx2".to_owned(),
         threads: 4,
+        pid: 0,
     };
     ResultGroup { build: Some(build), jobs, first_ms, last_ms }
 }
@@ -161,7 +164,8 @@ fn group(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> Re
 #[test]
 fn results_have_their_provenance() {
     let day = 86_400_000;
-    let alike = [group("aaaa", "one", 2, 2 * day, 3 * day), group("aaaa", "one", 3, day, 2 * day)];
+    let mut alike = [group("aaaa", "one", 2, 2 * day, 3 * day), group("aaaa", "one", 3, day, 2 * day)];
+    alike[1].build.as_mut().expect("a build").pid = 7;
     let provenance = Provenance::grouped("{ \"name\": \"mine\" }".to_owned(), 0, alike.clone());
     assert_eq!(provenance.groups, [group("aaaa", "one", 5, day, 3 * day)]);
     let rows = partial_study();

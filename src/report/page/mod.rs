@@ -112,7 +112,7 @@ fn build(group: &ResultGroup) -> Vec<Text> {
         line.extend([
             Text::from(&build.version).and(Span::Break).and(Text::code(short + modified)),
             (&build.host).into(),
-            format!("{cpu} ({})", build.platform).into(),
+            format!("{cpu} ({})", build.platform()).into(),
             (&build.vectors).into(),
             build.threads.to_string().into(),
         ]);
