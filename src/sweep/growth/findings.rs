@@ -74,12 +74,13 @@ fn state(study: &Study, plan: &PlanStatus, rows: &[JobRow]) -> String {
 fn branches(rows: &[JobRow]) -> Vec<BranchPoint> {
     let mut found: IndexMap<String, BranchPoint> = IndexMap::new();
     for row in rows {
-        let Some(way) = own(row, DIRECTION) else { continue };
+        // A measured point has no way.
+        let Some(way) = own(row, DIRECTION).and_then(Value::as_str) else { continue };
         let parameters = without(row, DIRECTION);
         let point = found.entry(serde_json::to_string(&parameters).unwrap_or_default());
         let point = point.or_insert_with(|| BranchPoint { parameters, up: None, down: None });
         let end = row.record().map(Endpoint::of);
-        if way.as_str() == Some(Direction::Up.name()) {
+        if way == Direction::Up.name() {
             point.up = end;
         } else {
             point.down = end;
