@@ -1,6 +1,9 @@
-use super::engine::{Connection, query};
+//! How many jobs there are, what they cost, and how long they took: what says how far the work is.
+
+use super::engine::{Connection, Statement, query};
 use super::error::QueueError;
 use super::handle::Queue;
+use super::lookup;
 use super::scope::Scope;
 use super::state::JobState;
 use serde::Serialize;
@@ -28,6 +31,48 @@ const OF_STUDY: &str = "
     GROUP BY j.state";
 
 const OF_ALL: &str = "SELECT state, COUNT(*) FROM jobs GROUP BY state";
+
+const STARTS: &str = "
+    SELECT CAST(COALESCE(SUM(j.attempt), 0) AS BIGINT)
+    FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = $1) AS m
+    JOIN jobs AS j ON j.id = m.job_id";
+
+/// The costs of jobs differ by orders of magnitude, so their number is no measure of the time.
+const REMAINING: &str = "SELECT COALESCE(SUM(cost), 0.0) FROM jobs WHERE state IN ('pending', 'running')";
+
+const REMAINING_OF_STUDY: Statement = Statement::each(
+    "
+    SELECT (SELECT COALESCE(SUM(cost), 0.0) FROM study_pending WHERE study_id = $1)
+         + (SELECT COALESCE(SUM(j.cost), 0.0) FROM jobs AS j INDEXED BY jobs_owner
+            WHERE j.state = 'running' AND j.owner IS NOT NULL
+              AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1))",
+    "
+    SELECT (SELECT COALESCE(SUM(cost), 0.0) FROM study_pending WHERE study_id = $1)
+         + (SELECT COALESCE(SUM(j.cost), 0.0) FROM jobs AS j
+            WHERE j.state = 'running'
+              AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1))",
+);
+
+/// Every so many rows only: reading a row costs as much as its record is long.
+const TIMINGS: &str = "
+    SELECT j.cost, r.wall_s
+    FROM jobs AS j
+    JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt
+    WHERE j.id % $1 = 0 AND j.state = 'done' AND r.wall_s IS NOT NULL";
+
+const TIMINGS_OF_STUDY: &str = "
+    SELECT j.cost, r.wall_s
+    FROM study_jobs AS m
+    JOIN jobs AS j ON j.id = m.job_id
+    JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt
+    WHERE m.study_id = $1 AND m.ordinal % $2 = 0 AND j.state = 'done' AND r.wall_s IS NOT NULL";
+
+/// The largest number of sampled rows. More rows would not improve an estimate.
+const MAX_SAMPLES: i64 = 1_000;
+
+const COUNT_ROWS: &str = "SELECT COUNT(*) FROM jobs";
+
+const COUNT_ROWS_OF_STUDY: &str = "SELECT COUNT(*) FROM study_jobs WHERE study_id = $1";
 
 impl Counts {
     /// The number of all jobs.
@@ -62,6 +107,47 @@ impl Queue {
         }
         let rows = query(OF_ALL);
         Counts::from_rows(rows.all(&mut self.connection).await?)
+    }
+
+    /// How many times jobs of a study were started. While the study stays the same, this never decreases, except for
+    /// jobs that are given back unstarted. Together with the counts by state it shows whether anything has changed,
+    /// without reading results.
+    ///
+    /// # Errors
+    /// [`QueueError::UnknownStudy`], or if the database cannot be read.
+    pub async fn starts(&mut self, study: &str) -> Result<u64, QueueError> {
+        let study_id = lookup::require(&mut self.connection, study).await?;
+        let starts: i64 = query(STARTS).bind(study_id).scalar(&mut self.connection).await?;
+        Ok(starts.unsigned_abs())
+    }
+
+    /// The sum of the costs of all jobs of `scope` that are pending or running.
+    ///
+    /// # Errors
+    /// [`QueueError::UnknownStudy`], or if the database cannot be read.
+    pub async fn remaining_cost(&mut self, scope: &Scope) -> Result<f64, QueueError> {
+        let study_id = scope.study_id(&mut self.connection).await?;
+        let remaining = match study_id {
+            None => query(REMAINING),
+            Some(id) => query(REMAINING_OF_STUDY).bind(id),
+        };
+        remaining.scalar(&mut self.connection).await
+    }
+
+    /// The cost and the run time in seconds of the done jobs of `scope`; of many, those of an even sample.
+    ///
+    /// # Errors
+    /// [`QueueError::UnknownStudy`], or if the database cannot be read.
+    pub async fn timings(&mut self, scope: &Scope) -> Result<Vec<(f64, f64)>, QueueError> {
+        let study_id = scope.study_id(&mut self.connection).await?;
+        let rows = study_id.map_or_else(|| query(COUNT_ROWS), |id| query(COUNT_ROWS_OF_STUDY).bind(id));
+        let rows: i64 = rows.scalar(&mut self.connection).await?;
+        let every = 1 + rows / MAX_SAMPLES;
+        let timings = match study_id {
+            None => query(TIMINGS).bind(every),
+            Some(id) => query(TIMINGS_OF_STUDY).bind(id).bind(every),
+        };
+        timings.all(&mut self.connection).await
     }
 }
 
