@@ -3,7 +3,7 @@
 use super::digest::{self, Integrity};
 use super::engine::{columns, query};
 use super::error::QueueError;
-use super::pages::{Paged, Pages};
+use super::pages::Pages;
 
 /// A result of any attempt of any job.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -64,19 +64,14 @@ columns! {
     }
 }
 
-impl Paged for ResultColumns {
-    type Item = StoredResult;
-
-    fn place(&self) -> Vec<i64> {
-        vec![self.job_id, self.attempt]
-    }
-
-    fn item(self) -> Result<StoredResult, QueueError> {
-        let Self { job_id: _, attempt, key, record, error, digest, counts } = self;
+impl ResultColumns {
+    fn item(self) -> Result<(Vec<i64>, StoredResult), QueueError> {
+        let Self { job_id, attempt, key, record, error, digest, counts } = self;
         let key = key.unwrap_or_default();
         let expected = || digest::of_result(&key, record.as_deref(), error.as_deref());
         let integrity = Integrity::of(digest.as_deref(), expected);
-        Ok(StoredResult { key, attempt, counts: counts == 1, record, integrity })
+        let result = StoredResult { key, attempt, counts: counts == 1, record, integrity };
+        Ok((vec![job_id, attempt], result))
     }
 }
 
@@ -84,73 +79,11 @@ const PAYLOADS: &str = "
     SELECT j.id, j.key, p.payload FROM jobs AS j LEFT JOIN payloads AS p ON p.job_id = j.id
     WHERE j.id > $1 ORDER BY j.id LIMIT $2";
 
-columns! {
-    struct PayloadColumns {
-        id: i64,
-        key: String,
-        payload: Option<String>,
-    }
-}
-
-impl Paged for PayloadColumns {
-    type Item = StoredPayload;
-
-    fn place(&self) -> Vec<i64> {
-        vec![self.id]
-    }
-
-    fn item(self) -> Result<StoredPayload, QueueError> {
-        Ok(StoredPayload { key: self.key, payload: self.payload })
-    }
-}
-
 const FINAL_STATES: &str = "
     SELECT f.job_id, j.key, f.bytes, f.digest FROM final_states AS f LEFT JOIN jobs AS j ON j.id = f.job_id
     WHERE f.job_id > $1 ORDER BY f.job_id LIMIT $2";
 
-columns! {
-    struct StateColumns {
-        job_id: i64,
-        key: Option<String>,
-        bytes: Vec<u8>,
-        digest: Option<String>,
-    }
-}
-
-impl Paged for StateColumns {
-    type Item = StoredState;
-
-    fn place(&self) -> Vec<i64> {
-        vec![self.job_id]
-    }
-
-    fn item(self) -> Result<StoredState, QueueError> {
-        let key = self.key.unwrap_or_default();
-        let integrity = Integrity::of(self.digest.as_deref(), || digest::of_state(&key, &self.bytes));
-        Ok(StoredState { key, integrity })
-    }
-}
-
 const CHECKPOINTS: &str = "SELECT job_id, bytes FROM checkpoints WHERE job_id > $1 ORDER BY job_id LIMIT $2";
-
-columns! {
-    struct CheckpointColumns {
-        job_id: i64,
-        bytes: Vec<u8>,
-    }
-}
-
-impl Paged for CheckpointColumns {
-    type Item = usize;
-
-    fn place(&self) -> Vec<i64> {
-        vec![self.job_id]
-    }
-
-    fn item(self) -> Result<usize, QueueError> {
-        Ok(self.bytes.len())
-    }
-}
 
 /// Before all numbers of jobs and attempts, also those of a damaged table.
 const BEFORE_ALL: i64 = i64::MIN;
@@ -158,27 +91,35 @@ const BEFORE_ALL: i64 = i64::MIN;
 impl Pages<StoredResult> {
     /// Every result of every attempt.
     pub fn of_results() -> Self {
-        Self::of::<ResultColumns>(query(RESULTS), &[BEFORE_ALL, BEFORE_ALL], PAGE)
+        Self::of(query(RESULTS), &[BEFORE_ALL, BEFORE_ALL], PAGE, ResultColumns::item)
     }
 }
 
 impl Pages<StoredPayload> {
     /// Every job's payload.
     pub fn of_payloads() -> Self {
-        Self::of::<PayloadColumns>(query(PAYLOADS), &[BEFORE_ALL], PAGE)
+        let item = |(id, key, payload): (i64, _, _)| Ok((vec![id], StoredPayload { key, payload }));
+        Self::of(query(PAYLOADS), &[BEFORE_ALL], PAGE, item)
     }
 }
 
 impl Pages<StoredState> {
     /// Every final state.
     pub fn of_final_states() -> Self {
-        Self::of::<StateColumns>(query(FINAL_STATES), &[BEFORE_ALL], LARGE_PAGE)
+        let item = |(id, key, bytes, digest): (i64, Option<String>, Vec<u8>, Option<String>)| {
+            let key = key.unwrap_or_default();
+            let integrity = Integrity::of(digest.as_deref(), || digest::of_state(&key, &bytes));
+            Ok((vec![id], StoredState { key, integrity }))
+        };
+        Self::of(query(FINAL_STATES), &[BEFORE_ALL], LARGE_PAGE, item)
     }
 }
 
 impl Pages<usize> {
     /// The sizes of all checkpoints in bytes. Only their job can tell whether they are intact; if they are not, it begins anew.
     pub fn of_checkpoints() -> Self {
-        Self::of::<CheckpointColumns>(query(CHECKPOINTS), &[BEFORE_ALL], LARGE_PAGE)
+        Self::of(query(CHECKPOINTS), &[BEFORE_ALL], LARGE_PAGE, |(id, bytes): (i64, Vec<u8>)| {
+            Ok((vec![id], bytes.len()))
+        })
     }
 }

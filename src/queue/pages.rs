@@ -11,39 +11,38 @@ pub struct Pages<T> {
     query: Query<'static>,
     last: Vec<i64>,
     size: i64,
-    read: ReadPage<T>,
+    read: Box<ReadPage<T>>,
 }
 
 /// What a page has, and the place of its last row, if it has one.
 type Page<T> = (Vec<T>, Option<Vec<i64>>);
 
-type ReadPage<T> = for<'a> fn(Query<'static>, &'a mut Connection) -> Answer<'a, Page<T>>;
+type ReadPage<T> = dyn for<'a> Fn(Query<'static>, &'a mut Connection) -> Answer<'a, Page<T>> + Send + Sync;
 
-/// A row of a long table.
-pub(super) trait Paged: Columns {
-    /// What a reader gets.
-    type Item;
-
-    /// The numbers by which the table is ordered.
-    fn place(&self) -> Vec<i64>;
-
-    fn item(self) -> Result<Self::Item, QueueError>;
-}
-
-impl<T> Pages<T> {
+impl<T: Send + 'static> Pages<T> {
     /// Those of a statement whose last parameters are the place after which it reads, and the number of rows. `before` is a place
-    /// before all rows. Rows are read after the last one, because the largest number has none after it.
-    pub(super) fn of<R: Paged<Item = T>>(query: Query<'static>, before: &[i64], size: i64) -> Self {
-        Self { query, last: before.to_vec(), size, read: read::<R> }
+    /// before all rows. Rows are read after the last one, because the largest number has none after it. `item` gives the place of a
+    /// row and what a reader gets of it.
+    pub(super) fn of<R: Columns + 'static>(
+        query: Query<'static>,
+        before: &[i64],
+        size: i64,
+        item: fn(R) -> Result<(Vec<i64>, T), QueueError>,
+    ) -> Self {
+        let read = move |query: Query<'static>, connection| -> Answer<'_, Page<T>> {
+            Box::pin(async move {
+                let rows: Vec<R> = query.all(connection).await?;
+                let (mut items, mut last) = (Vec::with_capacity(rows.len()), None);
+                for row in rows {
+                    let (place, own) = item(row)?;
+                    last = Some(place);
+                    items.push(own);
+                }
+                Ok((items, last))
+            })
+        };
+        Self { query, last: before.to_vec(), size, read: Box::new(read) }
     }
-}
-
-fn read<'a, R: Paged>(query: Query<'static>, connection: &'a mut Connection) -> Answer<'a, Page<R::Item>> {
-    Box::pin(async move {
-        let rows: Vec<R> = query.all(connection).await?;
-        let last = rows.last().map(R::place);
-        Ok((rows.into_iter().map(R::item).collect::<Result<_, _>>()?, last))
-    })
 }
 
 impl Queue {

@@ -3,7 +3,7 @@ use super::engine::{Statement, columns, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
-use super::pages::{Paged, Pages};
+use super::pages::Pages;
 use super::state::JobState;
 use super::unsigned::unsigned;
 use serde::Deserialize;
@@ -122,20 +122,14 @@ struct Short {
     digest: Option<String>,
 }
 
-impl Paged for RowColumns {
-    type Item = StudyRow;
-
-    fn place(&self) -> Vec<i64> {
-        vec![self.ordinal]
-    }
-
-    fn item(self) -> Result<StudyRow, QueueError> {
+impl RowColumns {
+    fn item(self) -> Result<(Vec<i64>, StudyRow), QueueError> {
         let Self { short, ordinal, parameters, record, wall_s, payload } = self;
         let Short { key, state, error, attempt, crashes, note, digest } =
             serde_json::from_str(&short).map_err(|error| QueueError::Database(error.into()))?;
         let expected = || digest::of_result(&key, record.as_deref(), error.as_deref());
         let integrity = Integrity::of(digest.as_deref(), expected);
-        Ok(StudyRow {
+        let row = StudyRow {
             ordinal: ordinal.unsigned_abs(),
             key,
             parameters,
@@ -148,26 +142,8 @@ impl Paged for RowColumns {
             crashes: unsigned(crashes),
             note,
             payload,
-        })
-    }
-}
-
-columns! {
-    struct ParametersOfRow {
-        ordinal: i64,
-        parameters: String,
-    }
-}
-
-impl Paged for ParametersOfRow {
-    type Item = String;
-
-    fn place(&self) -> Vec<i64> {
-        vec![self.ordinal]
-    }
-
-    fn item(self) -> Result<String, QueueError> {
-        Ok(self.parameters)
+        };
+        Ok((vec![ordinal], row))
     }
 }
 
@@ -214,7 +190,7 @@ impl Queue {
             Rows::Done(label) => (Some(JobState::Done), Some(label.to_owned())),
         };
         let rows = query(ROWS).bind(study_id).bind(state.map(JobState::as_str)).bind(label);
-        Ok(Pages::of::<RowColumns>(rows.bind(i64::from(with_payloads)), &BEFORE_ALL, PAGE))
+        Ok(Pages::of(rows.bind(i64::from(with_payloads)), &BEFORE_ALL, PAGE, RowColumns::item))
     }
 
     /// The parameters of each row of a study page by page, in the order of its document. Records, which are most of the data of rows,
@@ -224,7 +200,8 @@ impl Queue {
     /// As [`Queue::rows`].
     pub async fn pages_of_parameters(&mut self, study: &str) -> Result<Pages<String>, QueueError> {
         let study_id = lookup::require(&mut self.connection, study).await?;
-        Ok(Pages::of::<ParametersOfRow>(query(PARAMETERS).bind(study_id), &BEFORE_ALL, PAGE))
+        let item = |(ordinal, parameters): (i64, String)| Ok((vec![ordinal], parameters));
+        Ok(Pages::of(query(PARAMETERS).bind(study_id), &BEFORE_ALL, PAGE, item))
     }
 
     /// The parameters of a job in a study: those of its first row there, if it has one.
