@@ -29,6 +29,8 @@ pub struct ReportRequest {
     pub by: Option<String>,
     /// Further quantities; the study's own choice if empty.
     pub y: Vec<String>,
+    /// Whether μ\* has a figure of its span over the other parameters and the studies.
+    pub span: bool,
     /// How the axes of parameters are scaled; the study's own choice if absent, and otherwise as the values are given.
     pub scale: Vec<(String, Spacing)>,
 }
@@ -165,7 +167,7 @@ impl ReportRequest {
         }
         let is_morris = is_morris(studies);
         let notes = different_inputs(studies, &known)?;
-        Ok(View { x, by, y, descriptions: descriptions(), is_log, is_morris, notes })
+        Ok(View { x, by, y, span: self.span, descriptions: descriptions(), is_log, is_morris, notes })
     }
 }
 
