@@ -140,7 +140,7 @@ impl ReportRequest {
             return Err(SweepError::NoSuchAxis { option: "--by", name, message });
         }
         // The two ways along a parameter are curves beside each other.
-        let is_usual = by.is_none() && x.as_deref() != Some(DIRECTION);
+        let is_usual = by.is_none() && x.as_deref() != Some(DIRECTION) && !self.span;
         let by = if is_usual && known.contains(&DIRECTION) { Some(DIRECTION.to_owned()) } else { by };
         let quantities = if self.y.is_empty() { &own.y } else { &self.y };
         let mut y: Vec<&'static Scalar> = Vec::new();

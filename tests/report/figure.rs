@@ -7,8 +7,8 @@ use std::sync::Arc;
 use tribosweep_mechanics::analysis::{Outcome, Regime};
 use tribosweep_output::publish::chart::palette::{BLUE, GREEN, GREY, VERMILLION};
 use tribosweep_output::publish::chart::{Axis, Chart, Guide, Layer, Panel, Rgb, Sample, Shape};
-use tribosweep_output::report::figure::Plot;
-use tribosweep_output::report::{Discretisation, JobRow, MeshError, RowState, Scalar, write};
+use tribosweep_output::report::figure::{Plot, figures};
+use tribosweep_output::report::{Discretisation, JobRow, MeshError, RowState, Scalar, View, write};
 
 /// The first colours of the palette, in the order of ascending μ.
 const COLOURS: [Rgb; 3] = [BLUE, VERMILLION, GREEN];
@@ -85,15 +85,17 @@ fn a_span_holds_all_jobs_of_its_speed() {
         other("second", 7.0, 0.29, "both_ends"),
         job("third", 7.0, 0.27),
     ];
-    let panel = panel(&rows, Plot::Span);
+    let view = View { by: Some("mu".to_owned()), ..View::default() };
+    let [figure] = &figures(&rows, &view, Plot::Span)[..] else { panic!("one figure") };
+    let [panel] = &figure.chart.panels[..] else { panic!("one panel") };
     let corners = vec![(2.0, 0.31), (7.0, 0.24), (7.0, 0.29), (2.0, 0.35)];
-    let [(found, _)] = &areas(&panel, GREY)[..] else { panic!("one band") };
+    let [(found, _)] = &areas(panel, GREY)[..] else { panic!("one band") };
     assert_eq!(*found, corners);
-    let lines = lines(&panel);
+    let lines = lines(panel);
     assert_eq!(lines.len(), 1);
     assert_eq!(lines[0].0, [(2.0, 0.31), (4.0, 0.30), (7.0, 0.25)]);
-    assert_eq!(points(&panel).len(), rows.len());
-    assert_eq!(guides(&panel).iter().map(|guide| guide.at).collect::<Vec<_>>(), [0.4]);
+    assert_eq!(points(panel).len(), rows.len());
+    assert_eq!(guides(panel).iter().map(|guide| guide.at).collect::<Vec<_>>(), [0.4]);
 }
 
 /// Protects: there is no line μ\* = μ where the friction law has other coefficients too, or where nobody knows it.
