@@ -104,10 +104,12 @@ fn a_single_job_is_that_of_the_sweep() {
 fn the_text_agrees_with_the_record() {
     let folder = folder();
     let record: Value = serde_json::from_str(
-        &folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --set beta_r_s=5e-8 --json"),
+        &folder
+            .ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --set beta_r_s=5e-8 --json"),
     )
     .unwrap();
-    let text = folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --set beta_r_s=5e-8");
+    let text =
+        folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --set beta_r_s=5e-8");
     let line = |name: &str| {
         let found = text.lines().find(|line| line.split_whitespace().next() == Some(name));
         found.map(|line| line.split_whitespace().nth(1).unwrap().to_owned())

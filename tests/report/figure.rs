@@ -84,6 +84,11 @@ fn a_span_holds_all_jobs_of_its_speed() {
         other("second", 2.0, 0.33, "both_ends"),
         other("second", 7.0, 0.29, "both_ends"),
         job("third", 7.0, 0.27),
+        // A run that is not periodic has no place in the span.
+        JobRow {
+            state: done(Outcome::NotPeriodic, Regime::Undecided, 0.1),
+            ..other("third", 2.0, 0.1, "both_sides")
+        },
     ];
     let view = View { by: Some("mu".to_owned()), ..View::default() };
     let [figure] = &figures(&rows, &view, Plot::Span)[..] else { panic!("one figure") };
