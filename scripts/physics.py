@@ -246,7 +246,8 @@ def main():
         "Written by `scripts/physics.py`; do not edit. Paper: Baillet, d'Errico, Berthier, *Influence of sliding contact\n"
         "local dynamics on macroscopic friction coefficient variation*, Revue européenne des éléments finis 14 (2005)\n"
         f"305–321. Computed: `studies/figure7.json`, the reference scene ({elements} elements, rigid disk, 1 mm clamp at\n"
-        "the inner side, top tied in z, β_R = 5·10⁻⁸ s). *Front* is the centre of the leading edge (−y), *rear* that of\n"
+        "the inner side, top tied in z, damping of β₂ = 1 at the paper's step of 55 ns: β_R = 27.5 ns; [choices.md](choices.md)\n"
+        "has the other choices that the paper leaves). *Front* is the centre of the leading edge (−y), *rear* that of\n"
         "the trailing edge (+y); regimes name states with a share above 3 % of the node-time. Stresses are smoothed over\n"
         "2 µs, because the one-step force of a closing node is a property of the time step.\n\n"
         + table

@@ -46,6 +46,10 @@ struct Axes {
     /// Quantities with figures and tables besides the usual ones, by their names in the export, such as n_over_f_max.
     #[arg(long, value_name = "QUANTITY", num_args = 1.., value_delimiter = ',')]
     y: Vec<String>,
+    /// A figure of the span of μ* over all jobs with the same values along the axis and of the curves: over the other parameters, and
+    /// over the studies.
+    #[arg(long)]
+    span: bool,
     /// How the axis of a parameter is scaled, such as load_n=log or omega_rpm=linear; may be repeated. Default: that of the
     /// study's file, or as the values are given there.
     #[arg(long, value_name = "NAME=SCALE", value_parser = scale)]
@@ -104,13 +108,14 @@ impl OutFolder {
 /// Writes the report and prints the path of its page.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let studies = args.studies.iter().map(|study| sweep::study_name(study)).collect::<Result<_, _>>()?;
-    let Axes { x, by, y, scale } = &args.axes;
+    let Axes { x, by, y, span, scale } = &args.axes;
     let request = ReportRequest {
         studies,
         data: args.data.clone(),
         x: x.clone(),
         by: by.clone(),
         y: y.clone(),
+        span: *span,
         scale: scale.clone(),
     };
     let folder = OutFolder { folder: args.out.folder.clone() }.of(&request.folder_name());

@@ -68,8 +68,11 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let layouts = Layouts { all: &layout, jobs: jobs_layout, whole: whole.as_ref().unwrap_or(jobs_layout) };
     let pages = inspections(out_dir).into_iter().filter_map(|found| Some((found.job.clone(), found.page()?)));
     let pages: HashMap<String, String> = pages.collect();
-    let plots: Vec<Plot> =
-        Plot::ALL.into_iter().chain(view.y.iter().map(|scalar| Plot::Of(scalar))).collect();
+    let plots: Vec<Plot> = Plot::ALL
+        .into_iter()
+        .filter(|plot| view.span || *plot != Plot::Span)
+        .chain(view.y.iter().map(|scalar| Plot::Of(scalar)))
+        .collect();
     let quantities = QUANTITIES.into_iter().chain(view.y.iter().map(|scalar| Quantity::Of(scalar)));
 
     // With many jobs the texts of files are large, so that only some of them are in memory at a time.

@@ -12,6 +12,8 @@ pub struct View {
     pub by: Option<String>,
     /// Quantities that get figures and tables besides μ\*, the frequency and the regime.
     pub y: Vec<&'static Scalar>,
+    /// Whether μ\* has a figure of its span over everything but the axis and the parameter of the curves.
+    pub span: bool,
     /// Parameters in words, by name, for the titles of axes: `pin's Young's modulus`, without the unit.
     pub descriptions: BTreeMap<String, String>,
     /// Parameters whose axes are known to be logarithmic (true) or linear; the values of others decide.
@@ -28,6 +30,7 @@ impl View {
         x: None,
         by: None,
         y: Vec::new(),
+        span: false,
         descriptions: BTreeMap::new(),
         is_log: BTreeMap::new(),
         is_morris: false,

@@ -61,7 +61,8 @@ impl Default for Numerics {
     fn default() -> Self {
         Self {
             beta2: 0.5,
-            beta_r_s: 5.0e-8,
+            // The damping of β₂ = 1 at the time step of 55 ns of Baillet, d'Errico and Berthier (2005).
+            beta_r_s: 2.75e-8,
             safety_factor: 0.7,
             time_step_s: None,
             precision: Precision::Double,

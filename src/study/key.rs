@@ -13,23 +13,30 @@ const HEX_DIGITS: usize = 32;
 
 /// The key of a job under a version of the solver: BLAKE3 of its canonical JSON, 32 hex digits.
 ///
-/// The JSON has the fields that have an effect and not their default values. In canonical JSON the fields are sorted, there is no
+/// The JSON has the fields that have an effect and not the default values of the first version with them. In canonical JSON the fields are sorted, there is no
 /// space, and numbers have their shortest exact form, with 0 for −0. A field that a later version adds leaves the keys of jobs that do
-/// not use it as they are. A change of a default value must raise the solver's version. A new `solver_version` changes every key, so
-/// that old results are not taken for new ones.
+/// not use it as they are. A new `solver_version` changes every key, so that old results are not taken for new ones.
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
-    static DEFAULTS: LazyLock<Value> = LazyLock::new(|| encode(&JobSpec::default()));
+    static LEFT_OUT: LazyLock<Value> = LazyLock::new(|| encode(&left_out()));
     let mut job = encode(&without_synonyms(spec));
     for pointer in without_effect(spec) {
         if let Some(field) = job.pointer_mut(pointer) {
-            *field = DEFAULTS.pointer(pointer).cloned().unwrap_or_default();
+            *field = LEFT_OUT.pointer(pointer).cloned().unwrap_or_default();
         }
     }
-    leave_out_defaults(&mut job, &DEFAULTS);
+    leave_out(&mut job, &LEFT_OUT);
     // The version cannot be confused with the job's text: it is quoted, and the job begins with a brace.
     let mut text = Value::from(solver_version).to_string();
     write_canonical(&job, &mut text);
     blake3::hash(text.as_bytes()).to_hex()[..HEX_DIGITS].to_owned()
+}
+
+/// A job whose values are left out of keys: the default values of the first version that had the field. A default value may change
+/// later, and then its first value stays here, so that every key still stands for the same job.
+fn left_out() -> JobSpec {
+    let mut job = JobSpec::default();
+    job.numerics.beta_r_s = 5.0e-8;
+    job
 }
 
 /// The job in which what means the same is the same: an angle, a mass, an inertia or a damper of 0 is absent, and so is a surface
@@ -66,16 +73,16 @@ fn without_synonyms(spec: &JobSpec) -> JobSpec {
     spec
 }
 
-/// Takes the fields out of `value` that have the same value in `default`. Null is the value of a field that is absent.
-fn leave_out_defaults(value: &mut Value, default: &Value) {
-    let (Value::Object(fields), Value::Object(defaults)) = (value, default) else { return };
-    for (name, default) in defaults {
-        leave_out_defaults(fields.entry(name).or_insert(Value::Null), default);
+/// Takes the fields out of `value` that have the same value in `left_out`. Null is the value of a field that is absent.
+fn leave_out(value: &mut Value, left_out: &Value) {
+    let (Value::Object(fields), Value::Object(others)) = (value, left_out) else { return };
+    for (name, other) in others {
+        leave_out(fields.entry(name).or_insert(Value::Null), other);
     }
     fields.retain(|name, value| {
-        let default = &default[name.as_str()];
-        let is_left_out = default.is_object() && value.as_object().is_some_and(serde_json::Map::is_empty);
-        value != default && !is_left_out
+        let other = &left_out[name.as_str()];
+        let is_empty = other.is_object() && value.as_object().is_some_and(serde_json::Map::is_empty);
+        value != other && !is_empty
     });
 }
 

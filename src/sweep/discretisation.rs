@@ -1,5 +1,6 @@
 //! The measured errors of mesh, time step and detection, for reports.
 
+use crate::publish::value::quantity;
 use crate::report::{Discretisation, MeshError};
 use crate::solver;
 use crate::spec::JobSpec;
@@ -65,9 +66,10 @@ fn measured_at(evidence: &Evidence) -> String {
         format!(", by version {} of the solver", evidence.solver_version)
     };
     format!(
-        "on {} at μ = {} and {speeds} rpm{version} (against the limit of fine meshes, which is known to ± {:.1} %)",
+        "on {} at μ = {}, β_R = {} and {speeds} rpm{version} (against the limit of fine meshes, which is known to ± {:.1} %)",
         evidence.scene,
         evidence.mu,
+        quantity(evidence.beta_r_s, "s"),
         100.0 * evidence.reference.mu_star_uncertainty
     )
 }

@@ -30,6 +30,8 @@ pub struct ReportRequest {
     pub by: Option<String>,
     /// Further quantities; the study's own choice if empty.
     pub y: Vec<String>,
+    /// Whether μ\* has a figure of its span over the other parameters and the studies.
+    pub span: bool,
     /// How the axes of parameters are scaled; the study's own choice if absent, and otherwise as the values are given.
     pub scale: Vec<(String, Spacing)>,
 }
@@ -132,7 +134,7 @@ impl ReportRequest {
             return Err(SweepError::NoSuchAxis { option: "--by", name, message });
         }
         // The two ways along a parameter are curves beside each other.
-        let is_usual = by.is_none() && x.as_deref() != Some(DIRECTION);
+        let is_usual = by.is_none() && x.as_deref() != Some(DIRECTION) && !self.span;
         let by = if is_usual && known.contains(&DIRECTION) { Some(DIRECTION.to_owned()) } else { by };
         let quantities = if self.y.is_empty() { &own.y } else { &self.y };
         let mut y: Vec<&'static Scalar> = Vec::new();
@@ -159,7 +161,7 @@ impl ReportRequest {
         }
         let is_morris = is_morris(studies);
         let notes = different_inputs(studies, &known)?;
-        Ok(View { x, by, y, descriptions: descriptions(), is_log, is_morris, notes })
+        Ok(View { x, by, y, span: self.span, descriptions: descriptions(), is_log, is_morris, notes })
     }
 }
 

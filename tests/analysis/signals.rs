@@ -19,6 +19,8 @@ pub fn coarse() -> JobSpec {
     let mut spec = JobSpec { stability: StabilityMethod::Simulate, ..JobSpec::default() };
     spec.scene.pin.elements = [6, 8, 5];
     spec.scene.clamp.width_m = 0.002;
+    // The regimes, decays and times of these tests are those of this damping.
+    spec.numerics.beta_r_s = 5.0e-8;
     spec
 }
 

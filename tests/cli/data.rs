@@ -73,7 +73,7 @@ fn all_data_are_exported() {
         ("size_y_m", json!(0.015)),
         ("young_modulus_pa", json!(1e9)),
         ("load_n", json!(30)),
-        ("beta_r_s", json!(5e-8)),
+        ("beta_r_s", json!(2.75e-8)),
         ("limit_s", json!(0.012)),
         ("parameter_cycles", json!(10)),
         ("tolerance", json!(0.01)),

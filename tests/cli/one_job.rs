@@ -99,15 +99,17 @@ fn a_single_job_is_that_of_the_sweep() {
     assert_eq!(record["status"], row["status"].as_str());
 }
 
-/// Protects: the text has the figures of the record, and a setting reaches the solver.
+/// Protects: the text has the figures of the record, and settings reach the solver: with less damping the job does not come to rest in its time.
 #[test]
 fn the_text_agrees_with_the_record() {
     let folder = folder();
     let record: Value = serde_json::from_str(
-        &folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --json"),
+        &folder
+            .ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --set beta_r_s=5e-8 --json"),
     )
     .unwrap();
-    let text = folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10");
+    let text =
+        folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --set beta_r_s=5e-8");
     let line = |name: &str| {
         let found = text.lines().find(|line| line.split_whitespace().next() == Some(name));
         found.map(|line| line.split_whitespace().nth(1).unwrap().to_owned())

@@ -5,10 +5,10 @@ use crate::synthetic::{done, measured, partial_study, periodic, record, report, 
 use std::collections::HashSet;
 use std::sync::Arc;
 use tribosweep_mechanics::analysis::{Outcome, Regime};
-use tribosweep_output::publish::chart::palette::{BLUE, GREEN, VERMILLION};
+use tribosweep_output::publish::chart::palette::{BLUE, GREEN, GREY, VERMILLION};
 use tribosweep_output::publish::chart::{Axis, Chart, Guide, Layer, Panel, Rgb, Sample, Shape};
-use tribosweep_output::report::figure::Plot;
-use tribosweep_output::report::{Discretisation, JobRow, MeshError, RowState, Scalar, write};
+use tribosweep_output::report::figure::{Plot, figures};
+use tribosweep_output::report::{Discretisation, JobRow, MeshError, RowState, Scalar, View, write};
 
 /// The first colours of the palette, in the order of ascending μ.
 const COLOURS: [Rgb; 3] = [BLUE, VERMILLION, GREEN];
@@ -62,6 +62,45 @@ fn each_mu_has_a_curve_and_each_result_a_marker() {
         assert_eq!(point.at, (row.parameters.omega_rpm(), row.record().expect("a result").mu_star));
         assert_eq!(data(tip, "mu").parse(), Ok(row.parameters.mu()));
     }
+}
+
+/// Protects: the span goes from the smallest to the largest result at each speed, over parameters and studies, its line is that of the
+/// first study, and a speed at which a study is alone has no span.
+#[test]
+fn a_span_holds_all_jobs_of_its_speed() {
+    let job = |study: &str, omega_rpm, mu_star| {
+        let mut own = row(omega_rpm, 0.4, periodic(mu_star));
+        study.clone_into(&mut own.study);
+        own
+    };
+    let other =
+        |study, omega_rpm, mu_star, side: &str| with(job(study, omega_rpm, mu_star), "clamp_side", side);
+    let rows = [
+        job("first", 2.0, 0.31),
+        job("first", 4.0, 0.30),
+        job("first", 7.0, 0.25),
+        other("second", 2.0, 0.35, "outer_side"),
+        other("second", 7.0, 0.24, "outer_side"),
+        other("second", 2.0, 0.33, "both_ends"),
+        other("second", 7.0, 0.29, "both_ends"),
+        job("third", 7.0, 0.27),
+        // A run that is not periodic has no place in the span.
+        JobRow {
+            state: done(Outcome::NotPeriodic, Regime::Undecided, 0.1),
+            ..other("third", 2.0, 0.1, "both_sides")
+        },
+    ];
+    let view = View { by: Some("mu".to_owned()), ..View::default() };
+    let [figure] = &figures(&rows, &view, Plot::Span)[..] else { panic!("one figure") };
+    let [panel] = &figure.chart.panels[..] else { panic!("one panel") };
+    let corners = vec![(2.0, 0.31), (7.0, 0.24), (7.0, 0.29), (2.0, 0.35)];
+    let [(found, _)] = &areas(panel, GREY)[..] else { panic!("one band") };
+    assert_eq!(*found, corners);
+    let lines = lines(panel);
+    assert_eq!(lines.len(), 1);
+    assert_eq!(lines[0].0, [(2.0, 0.31), (4.0, 0.30), (7.0, 0.25)]);
+    assert_eq!(points(panel).len(), rows.len());
+    assert_eq!(guides(panel).iter().map(|guide| guide.at).collect::<Vec<_>>(), [0.4]);
 }
 
 /// Protects: there is no line μ\* = μ where the friction law has other coefficients too, or where nobody knows it.

@@ -272,10 +272,12 @@ fn the_measured_error_belongs_to_jobs_that_are_as_fine() {
     let evidence = Evidence::measured();
     let error = |change: &dyn Fn(&mut JobSpec)| {
         let mut spec = base("standard", "");
+        spec.numerics.beta_r_s = evidence.beta_r_s;
         change(&mut spec);
         evidence.error_of(&spec).map(|found| (found.preset.name.as_str(), found.on_this_scene))
     };
     assert_eq!(error(&|_| ()), Some(("standard", true)));
+    assert_eq!(error(&|spec| spec.numerics.beta_r_s *= 0.5), Some(("standard", false)));
     for preset in Preset::ALL {
         let found = evidence.error_of(&base(preset.name(), "")).unwrap();
         assert_eq!(found.preset.name, preset.name());

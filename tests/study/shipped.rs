@@ -48,7 +48,7 @@ fn reference(mu: f64, omega_rpm: f64) -> JobSpec {
     spec.scene.clamp.side = ClampSide::InnerSide;
     spec.scene.clamp.width_m = 0.001;
     spec.scene.load.ramp_s = 5.0e-4;
-    spec.numerics.beta_r_s = 5.0e-8;
+    spec.numerics.beta_r_s = 2.75e-8;
     spec.numerics.precision = Precision::Single;
     spec.run.start = Start::Nested;
     spec.stability = StabilityMethod::Eigenvalues;

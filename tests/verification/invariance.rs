@@ -257,6 +257,7 @@ fn a_change_of_bits_raises_the_version() {
     spec.scene.pin.elements = [6, 8, 5];
     spec.scene.clamp.width_m = 0.002;
     spec.numerics.time_step_s = Some(1.5e-6);
+    spec.numerics.beta_r_s = 5.0e-8;
     let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
     let found =
         (tribosweep_mechanics::solver::VERSION, hash_of_bits::<f64>(&model), hash_of_bits::<f32>(&model));

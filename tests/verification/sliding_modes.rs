@@ -34,6 +34,8 @@ pub fn scene(elements: [usize; 3], width_m: f64, mu: f64, omega_rpm: f64) -> Job
     spec.scene.clamp.width_m = width_m;
     spec.scene.contact.mu = mu;
     spec.scene.disk.omega_rpm = omega_rpm;
+    // The independent solver had this damping.
+    spec.numerics.beta_r_s = 5.0e-8;
     spec
 }
 

@@ -129,7 +129,7 @@ fn marker(regime: Regime, is_periodic: bool, colour: Rgb) -> Marker {
 }
 
 /// Whether a run became periodic or came to rest, as measured points are taken to be.
-fn is_periodic(row: &JobRow) -> bool {
+pub(super) fn is_periodic(row: &JobRow) -> bool {
     row.record().is_none_or(|record| record.outcome != Outcome::NotPeriodic)
 }
 

@@ -7,6 +7,7 @@ mod edges;
 mod places;
 pub(super) mod residuals;
 mod shares;
+mod span;
 pub(super) mod stability;
 pub(super) mod waterfall;
 
@@ -47,6 +48,8 @@ pub enum Plot {
     GrowthRate,
     /// Stored spectra of the normal force over the disk speed.
     Waterfall,
+    /// The span of μ* over everything but the disk speed and μ, if it is asked for.
+    Span,
     /// Another number of the record, over the disk speed.
     Of(&'static Scalar),
 }
@@ -88,9 +91,10 @@ static OF_BIFURCATION: [&ExportColumn; 6] = columns([
 ]);
 
 impl Plot {
-    /// Those of every report.
-    pub const ALL: [Self; 9] = [
+    /// Those of every report; the span only where a view asks for it.
+    pub const ALL: [Self; 10] = [
         Self::MuStar,
+        Self::Span,
         Self::Frequency,
         Self::RegimeMap,
         Self::FrequencyMap,
@@ -113,6 +117,7 @@ impl Plot {
             Self::RegimePlane => "regime_plane",
             Self::GrowthRate => "growth_rate",
             Self::Waterfall => "waterfall",
+            Self::Span => "span",
             Self::Of(scalar) => scalar.name,
         }
     }
@@ -120,7 +125,7 @@ impl Plot {
     /// The file with the data behind it.
     pub(super) fn data(self) -> DataFile {
         match self {
-            Self::MuStar => DataFile::new("mu_star_points", &OF_MU_STAR),
+            Self::MuStar | Self::Span => DataFile::new("mu_star_points", &OF_MU_STAR),
             // The lines of the spectra of a waterfall are in a file of their own; these columns are those of the dots.
             Self::Frequency | Self::FrequencyMap | Self::Waterfall => {
                 DataFile::new("frequency_map", &OF_FREQUENCY)
@@ -148,6 +153,7 @@ impl Plot {
             Self::RegimePlane => "contact regimes on true axes".into(),
             Self::GrowthRate => "growth rates of steady sliding".into(),
             Self::Waterfall => "spectra of the normal force".into(),
+            Self::Span => "span of the macroscopic friction coefficient".into(),
             Self::Of(scalar) => scalar.title().into(),
         }
     }
@@ -170,7 +176,7 @@ impl Plot {
 
     /// Whether it can show measured points beside jobs.
     pub(super) fn shows_measured(self) -> bool {
-        matches!(self, Self::MuStar | Self::Frequency | Self::Of(_))
+        matches!(self, Self::MuStar | Self::Span | Self::Frequency | Self::Of(_))
     }
 }
 
@@ -279,6 +285,7 @@ pub(super) fn figures_of(
     let of_sheet = match plot {
         // The shares have a panel for each curve of each group.
         Plot::Shares => (MAX_PANELS / layout.series.len().max(1)).max(1),
+        Plot::Span => layout.groups.len().max(1),
         // These fill a sheet.
         Plot::Bifurcation | Plot::RegimePlane | Plot::GrowthRate | Plot::Waterfall => 1,
         _ => MAX_PANELS,
@@ -288,6 +295,7 @@ pub(super) fn figures_of(
             Plot::MuStar => curves::draw(layout, groups, MU_STAR),
             Plot::Frequency => curves::draw(layout, groups, FREQUENCY),
             Plot::Of(scalar) => curves::draw(layout, groups, scalar),
+            Plot::Span => span::draw(layout, groups, MU_STAR),
             Plot::RegimeMap => cells::regimes(layout, groups)?,
             Plot::FrequencyMap => cells::frequencies(layout, groups)?,
             Plot::Shares => shares::draw(layout, groups),

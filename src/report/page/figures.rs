@@ -37,6 +37,13 @@ pub(super) fn friction(parts: &Parts) -> Section {
         }
     );
     let mut blocks = figures(parts, Plot::MuStar, &caption);
+    let span = format!(
+        "Span of μ* {}: a panel for each {}, from the smallest to the largest value of all jobs there. Line: {}.",
+        against(parts.layouts.all),
+        parts.layouts.all.by_words(),
+        parts.layouts.all.sources.first().map_or("", |first| first.name)
+    );
+    blocks.extend(figures(parts, Plot::Span, &span));
     blocks.extend(head::numbers(parts.report.rows));
     let page = Span::Link("page to explore".to_owned(), explore::PAGE.to_owned());
     blocks.push(Block::Text(

@@ -36,8 +36,10 @@ fn found(parts: &Parts) -> Vec<String> {
     let threshold = parts.stability.and_then(|(analysis, _)| stability::found(analysis));
     let of_source = |name: &str| {
         let own: Vec<&JobRow> = rows.iter().filter(|row| row.study == name).collect();
-        let words: Vec<String> =
-            [friction(&own), frequencies(&own), not_solved(&own)].into_iter().flatten().collect();
+        let words: Vec<String> = [friction(&own), frequencies(&own), damping(&own), not_solved(&own)]
+            .into_iter()
+            .flatten()
+            .collect();
         let prefix = if sources.len() > 1 { format!("{name}: ") } else { String::new() };
         (!words.is_empty()).then(|| prefix + &words.join(" "))
     };
@@ -95,6 +97,21 @@ fn frequencies(rows: &[&JobRow]) -> Option<String> {
         None if decayed > 0 && decayed == done.count() => Some("Every oscillation decays.".to_owned()),
         None => None,
     }
+}
+
+/// The damping of the jobs, which μ\* depends on where the contact oscillates; none if they have several, or steady sliding alone.
+fn damping(rows: &[&JobRow]) -> Option<String> {
+    let oscillates = |row: &&&JobRow| row.record().is_some_and(|record| record.outcome != Outcome::Decayed);
+    let own = |row: &&JobRow| Some((row.numerics.as_ref()?.beta_r_s, row.numerics.as_ref()?.beta2));
+    let mut all = rows.iter().filter(oscillates).map(own);
+    let first = all.next()??;
+    let (beta_r_s, beta2) = Some(first).filter(|_| all.all(|other| other == Some(first)))?;
+    let [own, of_scheme] = [beta_r_s, 2.0 * beta_r_s].map(|seconds| value::quantity(seconds, "s"));
+    // The damping of β₂ depends on the time step, which is another one on each mesh.
+    (beta2 == 0.5).then(|| match beta_r_s {
+        0.0 => "The pin has no damping.".to_owned(),
+        _ => format!("Damping: β_R = {own}, that of β₂ = 1 at Δt = {of_scheme}."),
+    })
 }
 
 fn not_solved(rows: &[&JobRow]) -> Option<String> {

@@ -28,8 +28,8 @@ impl Evidence {
         Some(PresetError { preset: self.of(preset)?, on_this_scene: self.was_measured_at(spec) })
     }
 
-    /// Whether the errors were measured on the scene of a job: the reference scene with its integrator and damping, at the
-    /// same μ, and at a speed between the slowest and the fastest one.
+    /// Whether the errors were measured on the scene of a job: the reference scene with the same integrator, damping and μ, and at a
+    /// speed between the slowest and the fastest one.
     fn was_measured_at(&self, spec: &JobSpec) -> bool {
         let mut reference = JobSpec::default();
         reference.scene.pin.elements = spec.scene.pin.elements;
@@ -41,8 +41,7 @@ impl Evidence {
         let speeds = || self.reference.cases.iter().map(|case| case.omega_rpm);
         let omega = spec.scene.disk.omega_rpm;
         scene == reference.scene
-            && (spec.numerics.beta2, spec.numerics.beta_r_s)
-                == (reference.numerics.beta2, reference.numerics.beta_r_s)
+            && (spec.numerics.beta2, spec.numerics.beta_r_s) == (reference.numerics.beta2, self.beta_r_s)
             && speeds().any(|speed| speed <= omega)
             && speeds().any(|speed| speed >= omega)
     }

@@ -15,6 +15,8 @@ pub struct Evidence {
     pub scene: String,
     /// Local friction coefficient of all cases.
     pub mu: f64,
+    /// Stiffness-proportional damping β_R \[s\] of all cases.
+    pub beta_r_s: f64,
     /// What the errors are taken from.
     pub reference: ReferenceEvidence,
     /// One entry a preset, in the order of [`Preset::ALL`].

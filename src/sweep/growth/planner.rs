@@ -40,10 +40,12 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
         return Ok(Planned::Failed { error });
     }
     let growth = study.growth();
-    // Results of two versions do not belong to one curve.
+    // Results of two versions, or of two dampings, do not belong to one curve.
     let own: HashSet<String> = study.expand(solver::VERSION)?.into_iter().map(|job| job.key).collect();
     if rows.iter().any(|row| row.wave == 0 && !own.contains(&row.job)) {
-        let error = "its jobs are those of another version of the solver; submit the study again".to_owned();
+        let error =
+            "its jobs are those of another version of the solver or of its defaults; submit the study again"
+                .to_owned();
         return Ok(Planned::Failed { error });
     }
     if let Some(continues) = &growth.continues {
