@@ -2,7 +2,6 @@
 
 use super::digest::{self, Integrity};
 use super::engine::{columns, query};
-use super::error::QueueError;
 use super::pages::Pages;
 
 /// A result of any attempt of any job.
@@ -65,13 +64,13 @@ columns! {
 }
 
 impl ResultColumns {
-    fn item(self) -> Result<(Vec<i64>, StoredResult), QueueError> {
+    fn item(self) -> (Vec<i64>, StoredResult) {
         let Self { job_id, attempt, key, record, error, digest, counts } = self;
         let key = key.unwrap_or_default();
         let expected = || digest::of_result(&key, record.as_deref(), error.as_deref());
         let integrity = Integrity::of(digest.as_deref(), expected);
         let result = StoredResult { key, attempt, counts: counts == 1, record, integrity };
-        Ok((vec![job_id, attempt], result))
+        (vec![job_id, attempt], result)
     }
 }
 
@@ -91,7 +90,7 @@ const BEFORE_ALL: i64 = i64::MIN;
 impl Pages<StoredResult> {
     /// Every result of every attempt.
     pub fn of_results() -> Self {
-        Self::of(query(RESULTS), &[BEFORE_ALL, BEFORE_ALL], PAGE, ResultColumns::item)
+        Self::of(query(RESULTS), &[BEFORE_ALL, BEFORE_ALL], PAGE, |row: ResultColumns| Ok(row.item()))
     }
 }
 

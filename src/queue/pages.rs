@@ -21,28 +21,36 @@ type ReadPage<T> = dyn for<'a> Fn(Query<'static>, &'a mut Connection) -> Answer<
 
 impl<T: Send + 'static> Pages<T> {
     /// Those of a statement whose last parameters are the place after which it reads, and the number of rows. `before` is a place
-    /// before all rows. Rows are read after the last one, because the largest number has none after it. `item` gives the place of a
-    /// row and what a reader gets of it.
+    /// before all rows. Rows are read after the last one, because the largest number has none after it.
     pub(super) fn of<R: Columns + 'static>(
         query: Query<'static>,
         before: &[i64],
         size: i64,
-        item: fn(R) -> Result<(Vec<i64>, T), QueueError>,
+        item: ItemOf<R, T>,
     ) -> Self {
-        let read = move |query: Query<'static>, connection| -> Answer<'_, Page<T>> {
-            Box::pin(async move {
-                let rows: Vec<R> = query.all(connection).await?;
-                let (mut items, mut last) = (Vec::with_capacity(rows.len()), None);
-                for row in rows {
-                    let (place, own) = item(row)?;
-                    last = Some(place);
-                    items.push(own);
-                }
-                Ok((items, last))
-            })
-        };
-        Self { query, last: before.to_vec(), size, read: Box::new(read) }
+        let read: Box<ReadPage<T>> = Box::new(move |query, connection| read(query, connection, item));
+        Self { query, last: before.to_vec(), size, read }
     }
+}
+
+/// Gives the place of a row, and what a reader gets of it.
+type ItemOf<R, T> = fn(R) -> Result<(Vec<i64>, T), QueueError>;
+
+fn read<'a, R: Columns + 'static, T: Send + 'static>(
+    query: Query<'static>,
+    connection: &'a mut Connection,
+    item: ItemOf<R, T>,
+) -> Answer<'a, Page<T>> {
+    Box::pin(async move {
+        let rows: Vec<R> = query.all(connection).await?;
+        let (mut items, mut last) = (Vec::with_capacity(rows.len()), None);
+        for row in rows {
+            let (place, own) = item(row)?;
+            last = Some(place);
+            items.push(own);
+        }
+        Ok((items, last))
+    })
 }
 
 impl Queue {
