@@ -103,13 +103,10 @@ fn a_single_job_is_that_of_the_sweep() {
 #[test]
 fn the_text_agrees_with_the_record() {
     let folder = folder();
-    let record: Value = serde_json::from_str(
-        &folder
-            .ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --set beta_r_s=5e-8 --json"),
-    )
-    .unwrap();
-    let text =
-        folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --set beta_r_s=5e-8");
+    let settings = "--set mu=0.2 --set omega_rpm=7 --set load_n=10 --set beta_r_s=5e-8";
+    let record: Value =
+        serde_json::from_str(&folder.ok(&format!("solve mine.json {settings} --json"))).unwrap();
+    let text = folder.ok(&format!("solve mine.json {settings}"));
     let line = |name: &str| {
         let found = text.lines().find(|line| line.split_whitespace().next() == Some(name));
         found.map(|line| line.split_whitespace().nth(1).unwrap().to_owned())
@@ -119,7 +116,7 @@ fn the_text_agrees_with_the_record() {
     let mu_star: f64 = line("mu_star").unwrap().parse().unwrap();
     assert!((mu_star / record["mu_star"].as_f64().unwrap() - 1.0).abs() < 1e-5, "{text}");
     // What `show` prints of the same job in a database is the same, but for the study and the provenance.
-    folder.ok("run mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --name one");
+    folder.ok(&format!("run mine.json {settings} --name one"));
     let key = text.lines().next().unwrap().split_whitespace().nth(1).unwrap();
     let shown = folder.ok(&format!("show {key}"));
     let own = |text: &str| {
