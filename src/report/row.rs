@@ -176,7 +176,7 @@ impl JobRow {
     }
 
     /// The value of a parameter; null where this job has none of that name.
-    pub(super) fn parameter(&self, name: &str) -> Value {
+    pub fn parameter(&self, name: &str) -> Value {
         match name {
             OMEGA => self.omega_rpm.into(),
             MU => self.mu.into(),
