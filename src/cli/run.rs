@@ -1,17 +1,16 @@
 //! `tribosweep run`: submit, work and report.
 
 use super::error::CliError;
-use super::forecast;
 use super::output::print;
 use super::replace::Replacement;
 use super::report::{self, OutFolder};
 use super::study_args::StudyArgs;
 use super::submit::{Priority, submit};
 use super::unreadable::log_unreadable_rows;
-use super::work::{Checkpoints, Retries, Threads, options, work};
-use crate::queue::{Clock, Location, Queue, Scope, Shard};
+use super::work::{Checkpoints, Retries, Threads, options, work_on};
+use crate::queue::{Clock, Location, Queue, Shard};
 use crate::report::tables::{self, Quantity};
-use crate::sweep::{self, Forecast, ReportRequest};
+use crate::sweep::{self, ReportRequest};
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
@@ -41,13 +40,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         let queue = Queue::open_with(db.clone(), Clock::OfDatabase, args.retries.settings()).await?;
         sweep::with_open(queue, async |queue| {
             submit(&plan, &args.priority, Shard::WHOLE, &args.replacement, queue).await?;
-            let mut options = options(&args.threads, &args.checkpoints);
-            let forecast = Forecast::new(&plan, Some(queue), options.threads).await?;
-            forecast::announce(&forecast);
-            if let Some(time) = forecast.time {
-                options.expected_s_per_cost = time.per_cost_s;
-            }
-            let code = work(queue, &Scope::Study(name.to_owned()), options).await?;
+            let code = work_on(&plan, options(&args.threads, Some(&args.checkpoints)), queue).await?;
             let content = sweep::read_report(queue, &ReportRequest::of_study(name)).await?;
             print(&tables::page(&content.rows, &content.view, Quantity::MuStar, name))?;
             report::write(queue, &content, &args.out.of(name), None).await?;

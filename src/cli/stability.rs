@@ -3,25 +3,21 @@
 mod shapes;
 
 use super::error::CliError;
-use super::forecast;
 use super::output::{fill_file, log, print, stream};
 use super::replace::Replacement;
 use super::report::{self, StabilityFolder};
 use super::study_args::StudyArgs;
 use super::submit::{Priority, submit};
-use super::work::{Threads, work};
+use super::work::{Threads, options, work_on};
 use crate::analysis::stability::MODES;
 use crate::exit;
 use crate::publish::table::Format;
-use crate::publish::value;
-use crate::queue::{Location, Queue, Scope, Shard};
+use crate::queue::{Location, Shard};
 use crate::report::{Along, SHAPES, STABILITY_PAGE, modes_table, thresholds_table};
 use crate::sweep::Plan;
 use crate::sweep::{
-    self, Forecast, Purpose, StabilitySweep, WAVES, read_stability, ways_to_thresholds,
-    write_stability_report,
+    self, Purpose, plan_thresholds, read_stability, ways_to_thresholds, write_stability_report,
 };
-use crate::worker::WorkOptions;
 use std::path::PathBuf;
 
 /// Significant digits of numbers on a terminal.
@@ -68,12 +64,13 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = plan.name().to_owned();
     report::create_folder(&name, &args.out.of_modes())?;
     let along = along(&plan, args)?;
-    let mut sweep = StabilitySweep::new(plan, along.clone().filter(|_| !args.no_thresholds));
     let shown = along.clone().unwrap_or_else(Along::mu);
+    let wanted = along.as_ref().filter(|_| !args.no_thresholds);
     sweep::with_queue(db, Purpose::Create, async |queue| {
-        sweep.add_stored(queue).await?;
-        submit(sweep.plan(), &Priority::default(), Shard::WHOLE, &args.replacement, queue).await?;
-        let mut code = compute(&mut sweep, args, queue).await?;
+        let plan = plan_thresholds(plan, wanted, queue).await?;
+        submit(&plan, &Priority::default(), Shard::WHOLE, &args.replacement, queue).await?;
+        // There are no long runs whose states could be stored.
+        let mut code = work_on(&plan, options(&args.threads, None), queue).await?;
         let points = read_stability(queue, &name).await?;
         let table = modes_table(points.iter().filter(|point| point.on_grid), args.modes.into());
         if let Some(path) = &args.csv {
@@ -83,7 +80,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             stream(|out| Ok(table.write(Format::JsonLines, out)?))?;
         } else {
             print(&table.rounded(DIGITS).text())?;
-            if sweep.along().is_some() && !points.is_empty() {
+            if wanted.is_some() && !points.is_empty() {
                 let (table, notes) = thresholds_table(&points, &shown);
                 print(&format!("\nThresholds\n{}", table.rounded(DIGITS).text()))?;
                 for note in &notes {
@@ -121,31 +118,4 @@ fn along(plan: &Plan, args: &Args) -> Result<Option<Along>, CliError> {
         "--along {name}: expected a parameter with two values or more in `grid`, or one of `samples.zip`, that is no whole number; in \
          this study: {names}"
     )))
-}
-
-/// Runs the jobs, and then the waves of jobs that narrow the thresholds down.
-async fn compute(sweep: &mut StabilitySweep, args: &Args, queue: &mut Queue) -> Result<u8, CliError> {
-    let threads = args.threads.number();
-    // There are no long runs whose state could be stored.
-    let mut options = WorkOptions { checkpoint_interval: None, ..WorkOptions::new(threads) };
-    let forecast = Forecast::new(sweep.plan(), Some(&mut *queue), threads).await?;
-    forecast::announce(&forecast);
-    if let Some(time) = forecast.time {
-        options.expected_s_per_cost = time.per_cost_s;
-    }
-    let scope = Scope::Study(sweep.plan().name().to_owned());
-    let mut code = work(queue, &scope, options).await?;
-    for _ in 0..WAVES {
-        if code == exit::WORK_LEFT {
-            break;
-        }
-        let added = sweep.add_wave(queue).await?;
-        if added == 0 {
-            break;
-        }
-        log(format_args!("{} near the thresholds", value::count(added, "more point")));
-        sweep.plan().submit(queue).await?;
-        code = work(queue, &scope, options).await?;
-    }
-    Ok(code)
 }

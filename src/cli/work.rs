@@ -2,12 +2,13 @@
 
 use super::display::Display;
 use super::error::CliError;
+use super::forecast;
 use super::output::log;
 use super::signals::raise_on_signal;
 use crate::exit;
 use crate::publish::value::count;
 use crate::queue::{Clock, Location, Queue, Scope, Settings, TakenBack};
-use crate::sweep;
+use crate::sweep::{self, Forecast, Plan};
 use crate::worker::{self, Interrupt, WorkError, WorkOptions};
 use std::sync::Once;
 use std::time::Duration;
@@ -100,11 +101,16 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
     })
 }
 
-/// The options of a worker without an idle exit.
-pub(crate) fn options(threads: &Threads, checkpoints: &Checkpoints) -> WorkOptions {
+impl Checkpoints {
+    fn interval(&self) -> Option<Duration> {
+        Some(Duration::from_secs_f64(self.seconds)).filter(|interval| !interval.is_zero())
+    }
+}
+
+/// The options of a worker without an idle exit; it stores no states of jobs without `checkpoints`.
+pub(crate) fn options(threads: &Threads, checkpoints: Option<&Checkpoints>) -> WorkOptions {
     WorkOptions {
-        checkpoint_interval: Some(Duration::from_secs_f64(checkpoints.seconds))
-            .filter(|interval| !interval.is_zero()),
+        checkpoint_interval: checkpoints.and_then(Checkpoints::interval),
         job_key: Some(sweep::job_key),
         planner: Some(sweep::PLANNER),
         ..WorkOptions::new(threads.number())
@@ -131,7 +137,7 @@ impl Retries {
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     sweep::block_on(async {
         let settings = args.retries.settings().with_lease(args.lease);
-        let options = options(&args.threads, &args.checkpoints);
+        let options = options(&args.threads, Some(&args.checkpoints));
         interruptible(async |interrupt| {
             let queue = if args.idle_exit.is_none() {
                 Queue::open_existing(db.clone(), Clock::OfDatabase, settings).await?
@@ -151,10 +157,20 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     })
 }
 
-/// Runs the pending jobs of `scope` until they have ended or a signal asks to stop, logs what happened, and returns the
-/// exit code.
-pub(crate) async fn work(queue: &mut Queue, scope: &Scope, options: WorkOptions) -> Result<u8, CliError> {
-    interruptible(async |interrupt| work_and_log(interrupt, queue, scope, options).await).await
+/// Runs the jobs of a plan that was submitted until they have ended or a signal asks to stop, says before how long it takes, logs what
+/// happened, and returns the exit code.
+pub(crate) async fn work_on(
+    plan: &Plan,
+    mut options: WorkOptions,
+    queue: &mut Queue,
+) -> Result<u8, CliError> {
+    let forecast = Forecast::new(plan, Some(&mut *queue), options.threads).await?;
+    forecast::announce(&forecast);
+    if let Some(time) = forecast.time {
+        options.expected_s_per_cost = time.per_cost_s;
+    }
+    let scope = Scope::Study(plan.name().to_owned());
+    interruptible(async |interrupt| work_and_log(interrupt, queue, &scope, options).await).await
 }
 
 /// Runs `work` with an interrupt that a signal raises.

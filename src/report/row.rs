@@ -162,7 +162,7 @@ impl JobRow {
     }
 
     /// The value of a parameter or the source; null where this job has no parameter of that name.
-    pub(super) fn parameter(&self, name: &str) -> Value {
+    pub fn parameter(&self, name: &str) -> Value {
         if name == SOURCE {
             return self.study.as_str().into();
         }

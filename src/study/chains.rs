@@ -2,17 +2,25 @@
 
 use super::definition::Study;
 use super::expand::Job;
-use super::growth::{DIRECTION, Direction, Growth, KICK};
+use super::growth::{DIRECTION, Direction, Growth, KICK, Refine};
 use super::key::job_key;
 use super::parameter::PARAMETERS;
 use crate::spec::{Continuation, StabilityMethod, Start};
 use indexmap::IndexMap;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 impl Study {
     /// How the study grows.
     pub fn growth(&self) -> &Growth {
         &self.growth
+    }
+
+    /// Lets the study add points where they are needed.
+    pub fn refine(&mut self, refine: Refine) {
+        if let Value::Object(fields) = &mut self.document {
+            fields.insert("refine".to_owned(), json!(refine));
+        }
+        self.growth.refine = Some(refine);
     }
 
     /// The number of jobs that the study has in the end, at most; none if it does not grow.

@@ -74,8 +74,16 @@ pub struct Boundaries {
     /// What the two sides differ in.
     #[serde(default)]
     pub between: Side,
-    /// Width within which each boundary is to be known, in the unit of the parameter.
-    pub within: f64,
+    /// Width within which each boundary is to be known, in the unit of the parameter. Exactly one of `within` and `within_share` is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within: Option<f64>,
+    /// The same as a share of the value at the boundary. Near zero a boundary is known to 1/4096 of the distance of the points of
+    /// the grid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within_share: Option<f64>,
+    /// Neighbours that are further from each other get points in equal steps first. Absent: they get none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_step: Option<f64>,
 }
 
 /// Jobs that begin in the motion with which another one ended. Exactly one of `along` and `kicks` is given.
@@ -142,7 +150,7 @@ pub const KICK: &str = "kick";
 const CHAIN_KICK_M_S: f64 = 1.0e-4;
 
 /// Most jobs of a wave: the lanes of a thousand cores.
-const MOST_WAVE_JOBS: usize = 10_000;
+pub const MOST_WAVE_JOBS: usize = 10_000;
 
 /// How a study grows.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -231,7 +239,11 @@ impl Growth {
                 positive("refine.curves.minimum_within", curves.minimum_within);
                 positive("refine.curves.finest", curves.finest);
             }
-            positive("refine.boundaries.within", boundaries.as_ref().map(|own| own.within));
+            if let Some(boundaries) = boundaries {
+                positive("refine.boundaries.within", boundaries.within);
+                positive("refine.boundaries.within_share", boundaries.within_share);
+                positive("refine.boundaries.largest_step", boundaries.largest_step);
+            }
         }
         positive("continue.kick_m_s", self.continues.as_ref().and_then(|own| own.kick_m_s));
         if let Some(refine) = &self.refine {
@@ -251,6 +263,9 @@ impl Refine {
         }
         if self.curves.as_ref().is_some_and(|own| own.within.is_none() && own.minimum_within.is_none()) {
             found.push(source.problem("refine.curves", "expected `within`, `minimum_within`, or both"));
+        }
+        if self.boundaries.as_ref().is_some_and(|own| own.within.is_some() == own.within_share.is_some()) {
+            found.push(source.problem("refine.boundaries", "expected either `within` or `within_share`"));
         }
         if !(1..=MOST_WAVE_JOBS).contains(&self.wave_jobs) {
             let message = format!("expected a number of jobs from 1 to {MOST_WAVE_JOBS}");

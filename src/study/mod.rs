@@ -63,7 +63,9 @@ pub use change::{Basins, Changes};
 pub use definition::Study;
 pub use error::{Problem, StudyError};
 pub use expand::Job;
-pub use growth::{Boundaries, Continue, Curves, DIRECTION, Direction, Growth, KICK, Refine, Side};
+pub use growth::{
+    Boundaries, Continue, Curves, DIRECTION, Direction, Growth, KICK, MOST_WAVE_JOBS, Refine, Side,
+};
 pub use input::{Input, input_parameters, inputs};
 pub use key::{SharedKeys, job_key};
 pub use limits::MAX_JOBS;

@@ -209,7 +209,7 @@ impl Outline {
         self.source.changes.push(Change::of_name("", &name));
         self.grid.axes.retain(|axis| axis.parameter.name != STABILITY);
         if let Value::Object(fields) = &mut self.document {
-            // Points of modes are refined by the command itself.
+            // The command looks for boundaries of its own.
             fields.remove("refine");
             fields.remove("continue");
             fields.insert("name".to_owned(), name.into());

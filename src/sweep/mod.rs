@@ -64,7 +64,7 @@ pub use selection::{
     SelectedJob, StoredJob, StudyOfJob, find_job, row_of_job, select_all, select_by_key, select_by_parameters,
 };
 pub use sheet::sheet_of_job;
-pub use stability::{StabilitySweep, WAVES, name_of_modes, natural_way, read_stability, ways_to_thresholds};
+pub use stability::{name_of_modes, plan_thresholds, read_stability, way_of, ways_to_thresholds};
 pub use transfer::{Transfer, transfer};
 pub use trouble::Trouble;
 pub use work::{job_key, work};

@@ -10,11 +10,10 @@ use crate::publish::value;
 use crate::queue::{NewJob, NewStudy, Queue, Replace, Replaced, Shard, Submitted};
 use crate::solver;
 use crate::spec::{DiskKind, JobSpec};
-use crate::study::{Changes, Job, SharedKeys, Study, StudyText};
+use crate::study::{Changes, Job, Refine, SharedKeys, Study, StudyText};
 use indexmap::IndexMap;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
-use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// A study that has been read, expanded into jobs and checked: no job is refused before its first step.
@@ -28,6 +27,8 @@ pub struct Plan {
     workloads: Vec<Workload>,
     /// For each job the number of its workload.
     workload_of: Vec<usize>,
+    /// Jobs that are not points of the grid.
+    further: Vec<NewJob>,
     document: String,
 }
 
@@ -90,31 +91,21 @@ impl Plan {
             .collect();
         let (workloads, workload_of) = preflight(source_name, &jobs, &batches)
             .map_err(|refusal| refusal.with_doubts(study.warnings()))?;
-        Ok(Self { document: study.document(), study, jobs, batches, workloads, workload_of })
+        let (document, further) = (study.document(), Vec::new());
+        Ok(Self { study, jobs, batches, workloads, workload_of, further, document })
     }
 
-    /// Adds jobs that are not points of the study's grid. Jobs that the plan has are not added again, and neither are those that the
-    /// solver refuses.
-    pub(super) fn extend(&mut self, further: Vec<Job>) {
-        let mut keys: HashSet<String> = self.jobs.iter().map(|job| job.key.clone()).collect();
-        let places = self.batches.iter().cloned().zip(self.workload_of.iter().copied());
-        let mut workload_of: HashMap<String, Option<usize>> =
-            places.map(|(batch, number)| (batch, Some(number))).collect();
-        let mut batches = SharedKeys::new(solver::VERSION);
-        for job in further {
-            let batch = batches.key(job.spec.shared_part());
-            let known = *workload_of.entry(batch.clone()).or_insert_with(|| {
-                self.workloads.push(Workload::examine(&job.spec).ok()?);
-                Some(self.workloads.len() - 1)
-            });
-            if let Some(workload) = known
-                && keys.insert(job.key.clone())
-            {
-                self.jobs.push(job);
-                self.batches.push(batch);
-                self.workload_of.push(workload);
-            }
-        }
+    /// Lets the study grow.
+    pub(super) fn refine(&mut self, refine: Refine) {
+        self.study.refine(refine);
+        self.document = self.study.document();
+    }
+
+    /// Adds jobs that are not points of the study's grid, but for those that the solver refuses.
+    pub(super) fn extend(&mut self, further: &[(Job, Added)]) -> Result<(), SweepError> {
+        let jobs = added_jobs(self.name(), further)?;
+        self.further.extend(jobs.into_iter().map(|(job, _)| job));
+        Ok(())
     }
 
     /// The study.
@@ -156,7 +147,8 @@ impl Plan {
     /// # Errors
     /// If the database cannot be read.
     pub async fn preview_replacement(&self, queue: &mut Queue) -> Result<Option<Replaced>, SweepError> {
-        let keys = self.jobs.iter().map(|job| job.key.as_str()).collect();
+        let further = self.further.iter().map(|job| job.key.as_str());
+        let keys = self.jobs.iter().map(|job| job.key.as_str()).chain(further).collect();
         Ok(queue.preview_replacement(self.name(), &keys, &self.document).await?)
     }
 
@@ -194,7 +186,7 @@ impl Plan {
     /// The study in the form that the queue takes.
     fn new_study(&self, priority: Option<i64>) -> Result<NewStudy, SweepError> {
         let workload_of: Vec<&Workload> = self.workloads().collect();
-        let jobs = self
+        let mut jobs: Vec<NewJob> = self
             .jobs
             .par_iter()
             .zip(&self.batches)
@@ -206,31 +198,33 @@ impl Plan {
                 },
             )
             .collect::<Result<_, SweepError>>()?;
+        jobs.extend(self.further.iter().map(|job| NewJob { priority, ..job.clone() }));
         let grows = self.study.growth().is_any();
         Ok(NewStudy { name: self.name().to_owned(), document: self.document.clone(), jobs, grows })
     }
 }
 
-/// Why jobs are added to a study that grows.
-pub(super) struct Added<'a> {
+/// That the program adds a job to those of the study's author.
+#[derive(Debug, Clone)]
+pub(super) struct Added {
     /// The number of the wave, from 1.
     pub wave: u64,
-    /// For each job why it is added.
-    pub whys: &'a [&'static str],
+    /// Why it is added.
+    pub why: String,
 }
 
-/// Jobs of a wave in the form that the queue takes. with the reasons why they are added. Those that the solver
-/// would refuse before their first step are left out.
-pub(super) fn added_jobs(
+/// Added jobs in the form that the queue takes, with the reasons why they are added. Those that the solver would refuse before their
+/// first step are left out.
+pub(super) fn added_jobs<'a>(
     source_name: &str,
-    jobs: &[Job],
-    added: &Added<'_>,
-) -> Result<Vec<(NewJob, &'static str)>, SweepError> {
+    further: &'a [(Job, Added)],
+) -> Result<Vec<(NewJob, &'a str)>, SweepError> {
     let mut batches = SharedKeys::new(solver::VERSION);
     let mut cases = SharedKeys::new("");
+    let jobs: Vec<Job> = further.iter().map(|(job, _)| job.clone()).collect();
     let keys: Vec<String> = jobs.iter().map(|job| batches.key(job.spec.shared_part())).collect();
     let planned: Vec<Option<Workload>> =
-        if let Ok((workloads, workload_of)) = preflight(source_name, jobs, &keys) {
+        if let Ok((workloads, workload_of)) = preflight(source_name, &jobs, &keys) {
             workload_of.into_iter().map(|number| Some(workloads[number].clone())).collect()
         } else {
             let one = |(job, key): (&Job, &String)| {
@@ -240,29 +234,29 @@ pub(super) fn added_jobs(
             jobs.iter().zip(&keys).map(one).collect()
         };
     let mut new = Vec::new();
-    for (((job, batch), why), workload) in jobs.iter().zip(&keys).zip(added.whys).zip(planned) {
+    for (((job, added), batch), workload) in further.iter().zip(&keys).zip(planned) {
         if let Some(workload) = workload {
-            new.push((new_job(job, batch, &workload, &mut cases, Some((added.wave, why)))?, *why));
+            new.push((new_job(job, batch, &workload, &mut cases, Some(added))?, added.why.as_str()));
         }
     }
     Ok(new)
 }
 
-/// A job in the form that the queue takes. `added` is the wave and the reason of a job that the program adds.
+/// A job in the form that the queue takes.
 fn new_job(
     job: &Job,
     batch: &str,
     workload: &Workload,
     cases: &mut SharedKeys,
-    added: Option<(u64, &str)>,
+    added: Option<&Added>,
 ) -> Result<NewJob, SweepError> {
     let parameters = StoredParameters {
         omega_rpm: job.spec.scene.disk.omega_rpm,
         mu: job.spec.scene.contact.mu,
         grid: job.parameters.clone(),
         numerics: numerics(&job.spec, cases),
-        wave: added.map(|(wave, _)| wave),
-        why: added.map(|(_, why)| why.to_owned()),
+        wave: added.map(|own| own.wave),
+        why: added.map(|own| own.why.clone()),
     };
     Ok(NewJob {
         key: job.key.clone(),

@@ -4,7 +4,7 @@ use super::error::SweepError;
 use super::growth::read_growth;
 use super::request::{ReportContent, ReportRequest};
 use super::rows::read_rows;
-use super::stability::{name_of_modes, natural_way, read_stability};
+use super::stability::{name_of_modes, read_stability, way_of};
 use super::{provenance, sheet};
 use crate::publish::Sheet;
 use crate::queue::{Counts, Queue, Scope};
@@ -163,7 +163,7 @@ async fn stability(
     let Some(stored) = queue.study(&modes).await? else { return Ok(none()) };
     // Modes of a version whose study this one cannot read are left out.
     let Ok(definition) = Study::parse_stored(&stored.document, &modes) else { return Ok(none()) };
-    Ok((read_stability(queue, &modes).await?, natural_way(&definition)))
+    Ok((read_stability(queue, &modes).await?, way_of(&definition)))
 }
 
 /// What the studies are for, in their authors' words. With several studies, each text names its study.

@@ -226,6 +226,17 @@ fn mistakes_are_refused() {
             "did you mean `mu_star`?",
         ),
         ("refine", json!({ "boundaries": { "over": "mu", "within": 0 } }), "expected a number > 0"),
+        ("refine", json!({ "boundaries": { "over": "mu" } }), "either `within` or `within_share`"),
+        (
+            "refine",
+            json!({ "boundaries": { "over": "mu", "within": 0.1, "within_share": 0.1 } }),
+            "either `within` or `within_share`",
+        ),
+        (
+            "refine",
+            json!({ "boundaries": { "over": "mu", "within_share": 0.1, "largest_step": -1 } }),
+            "expected a number > 0",
+        ),
         (
             "refine",
             json!({ "boundaries": { "over": "mu", "within": 0.1 }, "wave_jobs": 0 }),

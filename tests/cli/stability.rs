@@ -82,6 +82,51 @@ fn nothing_is_computed_twice() {
     let after = wall_times(&folder.ok("export study-stability"));
     assert!(after.len() > before.len());
     assert!(before.iter().all(|(job, wall_s)| after[job] == *wall_s), "{before:?} {after:?}");
+
+    // A study whose grid has one of these μ alone loses none of them, and looks for no thresholds.
+    folder.ok("stability study.json --set mu=0.4");
+    assert_eq!(wall_times(&folder.ok("export study-stability")), after);
+}
+
+/// Protects: a study that was not made to grow, as those of earlier versions, grows when thresholds are asked for. Its points are found
+/// again, also those that the grid does not have any more.
+#[test]
+fn thresholds_begin_with_the_points_that_are_there() {
+    let folder = Folder::with("study", &small(&json!({ "mu": [0.1, 0.4], "omega_rpm": [7] })));
+    folder.ok("stability study.json --no-thresholds --set mu=[0.1,0.21,0.4]");
+    let before = wall_times(&folder.ok("export study-stability"));
+    let printed = folder.ok("stability study.json");
+    assert!(printed.contains("mu_c"), "{printed}");
+    let after = wall_times(&folder.ok("export study-stability"));
+    assert!(after.len() > before.len());
+    assert!(before.iter().all(|(job, wall_s)| after[job] == *wall_s), "{before:?} {after:?}");
+    let status = folder.ok("status study-stability");
+    assert!(status.contains("earlier: 1") && status.contains("boundary"), "{status}");
+}
+
+/// Protects: any worker plans the waves of the thresholds, and after Ctrl-C they go on to the same points.
+#[cfg(unix)]
+#[test]
+fn other_workers_go_on_with_the_thresholds() {
+    let study = small(&json!({ "mu": [0.05, 0.6], "omega_rpm": [3, 7, 20] }));
+    let undisturbed = Folder::with("study", &study);
+    undisturbed.ok("stability study.json");
+    let folder = Folder::with("study", &study);
+    let sweep = folder.start("stability study.json --threads 1");
+    folder.wait_for("study-stability", |counts| counts["done"] > 0);
+    sweep.signal("INT");
+    let (code, _, messages) = sweep.end();
+    // A fast machine may have finished before the signal.
+    assert!(matches!(code, Some(0 | 3)), "{code:?}: {messages}");
+    folder.ok("work --threads 2");
+    let status: Value = serde_json::from_str(&folder.ok("status study-stability --json")).unwrap();
+    assert_eq!(status["plan"], "complete", "{status}");
+    let again = folder.command("stability study.json").assert().code(0);
+    assert!(stderr(&again).contains(" 0 new, "), "{}", stderr(&again));
+    for file in ["modes.csv", "thresholds.csv"] {
+        let path = format!("reports/study-stability/{file}");
+        assert_eq!(folder.read(&path), undisturbed.read(&path), "{file}");
+    }
 }
 
 /// Protects: without thresholds the study has the points of its grid alone, and a study that does not vary μ has none.

@@ -26,8 +26,9 @@ pub async fn read_growth(
     let mut found = Findings { waves: waves(rows), state: state(&study, &plan, rows), ..Findings::default() };
     let growth = study.growth();
     if let Some(settings) = &growth.refine {
-        found.crossings = settings.boundaries.iter().flat_map(|own| refine::crossings(own, rows)).collect();
-        found.minima = settings.curves.iter().flat_map(|own| refine::minima(own, rows)).collect();
+        let (boundaries, curves) = (settings.boundaries.iter(), settings.curves.iter());
+        found.crossings = boundaries.flat_map(|own| refine::crossings(&study, own, rows)).collect();
+        found.minima = curves.flat_map(|own| refine::minima(&study, own, rows)).collect();
     }
     match &growth.continues {
         Some(Continue { along: Some(_), .. }) => found.branches = branches(rows),

@@ -1,7 +1,7 @@
 //! The next jobs of studies that grow, from the results of those that have ended.
 //!
 //! ```text
-//! rows of the study ──► series (jobs that differ in one parameter) ──┬──► refine: curves, minima, boundaries ──┐
+//! rows of the study ──► series (jobs that differ along one way) ─────┬──► refine: curves, minima, boundaries ──┐
 //!                                                                    └──► chains, kicks: jobs that continue ───┴──► wave
 //! ```
 //!
@@ -16,3 +16,4 @@ mod series;
 
 pub use findings::read_growth;
 pub use planner::PLANNER;
+pub(super) use series::{Series, along, name, position, rest, series_along};

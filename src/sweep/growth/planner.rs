@@ -40,6 +40,7 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
         return Ok(Planned::Failed { error });
     }
     let growth = study.growth();
+    let added = |why: &str| Added { wave: claim.wave, why: why.to_owned() };
     // Results of two versions, or of two dampings, do not belong to one curve.
     let own: HashSet<String> = study.expand(solver::VERSION)?.into_iter().map(|job| job.key).collect();
     if rows.iter().any(|row| row.wave == 0 && !own.contains(&row.job)) {
@@ -60,9 +61,8 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
             return Ok(Planned::Complete { note: format!("all chains have ended{stopped}") });
         }
         let note = format!("{}: {}", chains::PURPOSE, jobs.len());
-        let whys = vec![chains::PURPOSE; jobs.len()];
-        let added = added_jobs(&claim.study, &jobs, &Added { wave: claim.wave, whys: &whys })?;
-        let jobs: Vec<NewJob> = added.into_iter().map(|(job, _)| job).collect();
+        let jobs: Vec<(Job, Added)> = jobs.into_iter().map(|job| (job, added(chains::PURPOSE))).collect();
+        let jobs: Vec<NewJob> = added_jobs(&claim.study, &jobs)?.into_iter().map(|(job, _)| job).collect();
         if jobs.is_empty() {
             return Ok(Planned::Complete { note: "the solver refuses every further job".to_owned() });
         }
@@ -71,7 +71,7 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
     let Some(settings) = &growth.refine else {
         return Ok(Planned::Complete { note: "the study does not grow".to_owned() });
     };
-    let (wanted, given_up) = refine::wanted(settings, &rows);
+    let (wanted, given_up) = refine::wanted(&study, settings, &rows);
     if wanted.is_empty() {
         let note = match given_up {
             0 => "everything is known as well as it is asked for".to_owned(),
@@ -86,11 +86,12 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
     let mut known: HashSet<String> = rows.iter().map(|row| row.job.clone()).collect();
     let mut left = wanted.iter();
     let mut jobs: Vec<NewJob> = Vec::new();
-    let mut purposes = BTreeMap::<&str, u64>::new();
+    let mut purposes = BTreeMap::<String, u64>::new();
     // What a limit or the solver refuses makes room for the next point.
     while jobs.len() < most {
-        let new = |point: &Wanted| Some((study.job_at(&point.parameters, solver::VERSION)?, point.purpose));
-        let part: Vec<(Job, &'static str)> = left
+        let new =
+            |point: &Wanted| Some((study.job_at(&point.parameters, solver::VERSION)?, added(point.purpose)));
+        let part: Vec<(Job, Added)> = left
             .by_ref()
             .filter_map(new)
             .filter(|(job, _)| known.insert(job.key.clone()))
@@ -99,9 +100,8 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
         if part.is_empty() {
             break;
         }
-        let (part, whys): (Vec<Job>, Vec<&'static str>) = part.into_iter().unzip();
-        for (job, purpose) in added_jobs(&claim.study, &part, &Added { wave: claim.wave, whys: &whys })? {
-            *purposes.entry(purpose).or_default() += 1;
+        for (job, purpose) in added_jobs(&claim.study, &part)? {
+            *purposes.entry(purpose.to_owned()).or_default() += 1;
             jobs.push(job);
         }
     }

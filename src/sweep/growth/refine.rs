@@ -1,8 +1,8 @@
 //! Where curves and boundaries need more points.
 
-use super::series::{Kind, Series, kind, series_along};
+use super::series::{Kind, Point, Series, along, kind, series_along};
 use crate::report::{Crossing, JobRow, Minimum, Scalar};
-use crate::study::{Boundaries, Curves, Refine};
+use crate::study::{Boundaries, Curves, Refine, Study};
 use serde_json::Value;
 
 /// A point that is asked for.
@@ -11,7 +11,7 @@ pub struct Wanted {
     /// What is known is so many times worse than what is asked for.
     pub urgency: f64,
     pub parameters: Vec<(String, Value)>,
-    /// `curve`, `minimum` or `boundary`.
+    /// `curve`, `minimum`, `boundary` or `step`.
     pub purpose: &'static str,
 }
 
@@ -33,18 +33,24 @@ const ROUNDING: f64 = 1.0 + 1.0e-6;
 /// A position may be rounded by this share of the width of its interval.
 const ROUNDED_BY: f64 = 0.02;
 
+/// Steps may be rounded by this share of the largest one.
+const STEPS_ROUNDED_BY: f64 = 1.0e-8;
+
+/// Most steps of an interval in one wave.
+const MOST_STEPS: f64 = 1.0e3;
+
+/// A share of a boundary's value is too little near zero. There the boundary is narrowed down to this part of its interval.
+const FINEST_PART: f64 = 1.0 / 4096.0;
+
 /// All points that are asked for, the most urgent ones first, and the number of intervals that are given up.
-pub fn wanted(refine: &Refine, rows: &[JobRow]) -> (Vec<Wanted>, usize) {
+pub fn wanted(study: &Study, refine: &Refine, rows: &[JobRow]) -> (Vec<Wanted>, usize) {
     let mut all = Vec::new();
     if let Some(curves) = &refine.curves {
-        for series in series_along(rows, &curves.over) {
-            all.extend(on_curve(&series, curves));
-        }
+        all.extend(on_all(study, &curves.over, rows, |series| on_curve(series, curves)));
     }
-    if let Some(boundaries) = &refine.boundaries {
-        for series in series_along(rows, &boundaries.over) {
-            all.extend(on_boundaries(&series, boundaries));
-        }
+    if let Some(own) = &refine.boundaries {
+        let kind = |row: &JobRow| kind(row, own.between);
+        all.extend(on_all(study, &own.over, rows, |series| on_boundaries(series, own, kind)));
     }
     let given_up = all.iter().filter(|point| point.is_none()).count();
     let mut wanted: Vec<Wanted> = all.into_iter().flatten().collect();
@@ -53,28 +59,36 @@ pub fn wanted(refine: &Refine, rows: &[JobRow]) -> (Vec<Wanted>, usize) {
     (wanted, given_up)
 }
 
+/// What is found on all series along a parameter that have points of the study's author.
+fn on_all<T>(
+    study: &Study,
+    over: &str,
+    rows: &[JobRow],
+    find: impl Fn(&Series<'_, JobRow>) -> Vec<T>,
+) -> Vec<T> {
+    series_along(rows, &along(study, over)).values().filter(|own| own.is_given()).flat_map(find).collect()
+}
+
 /// The boundaries of a study as far as they are known.
-pub fn crossings(boundaries: &Boundaries, rows: &[JobRow]) -> Vec<Crossing> {
-    let series = series_along(rows, &boundaries.over);
-    let of_series = |series: &Series<'_>| -> Vec<Crossing> {
+pub fn crossings(study: &Study, boundaries: &Boundaries, rows: &[JobRow]) -> Vec<Crossing> {
+    on_all(study, &boundaries.over, rows, |series| {
         let (known, _) = series.known(|row| kind(row, boundaries.between));
         let crossing = |pair: &[(f64, Kind)]| Crossing {
             rest: series.rest.clone(),
             over: boundaries.over.clone(),
             between: [pair[0].1.name.clone(), pair[1].1.name.clone()],
             range: [pair[0].0, pair[1].0],
-            wanted: boundaries.within,
+            wanted: within(series, boundaries, [pair[0].0, pair[1].0]),
         };
         known.windows(2).filter(|pair| pair[0].1.name != pair[1].1.name).map(crossing).collect()
-    };
-    series.iter().flat_map(of_series).collect()
+    })
 }
 
 /// The minima of the curves of a study.
-pub fn minima(curves: &Curves, rows: &[JobRow]) -> Vec<Minimum> {
+pub fn minima(study: &Study, curves: &Curves, rows: &[JobRow]) -> Vec<Minimum> {
     let Some(wanted) = curves.minimum_within else { return Vec::new() };
     let Some(scalar) = Scalar::find(&curves.of) else { return Vec::new() };
-    let minimum = |series: Series<'_>| {
+    let minimum = |series: &Series<'_, JobRow>| {
         let (known, _) = series.known(|row| scalar.value(row));
         let at = lowest(&known)?;
         let neighbour = |index: Option<usize>| known.get(index?).map(|(x, _)| *x);
@@ -89,7 +103,7 @@ pub fn minima(curves: &Curves, rows: &[JobRow]) -> Vec<Minimum> {
             is_flat: is_flat(&known, curves),
         })
     };
-    series_along(rows, &curves.over).into_iter().filter_map(minimum).collect()
+    on_all(study, &curves.over, rows, |series| minimum(series).into_iter().collect())
 }
 
 /// Whether the values of a curve differ by no more than the error that is asked for. Then its minimum is anywhere.
@@ -104,7 +118,7 @@ fn lowest(known: &[(f64, f64)]) -> Option<usize> {
 }
 
 /// The points that a curve asks for; none for an interval that is given up.
-fn on_curve(series: &Series<'_>, curves: &Curves) -> Vec<Option<Wanted>> {
+fn on_curve(series: &Series<'_, JobRow>, curves: &Curves) -> Vec<Option<Wanted>> {
     let Some(scalar) = Scalar::find(&curves.of) else { return Vec::new() };
     let (known, unknown) = series.known(|row| scalar.value(row));
     let (Some(first), Some(last)) = (known.first(), known.last()) else { return Vec::new() };
@@ -132,7 +146,7 @@ fn on_curve(series: &Series<'_>, curves: &Curves) -> Vec<Option<Wanted>> {
     }
     let point = |(index, (urgency, purpose)): (usize, (f64, &'static str))| {
         let x = inside([known[index].0, known[index + 1].0], &unknown, 0.5, f64::INFINITY)?;
-        Some(Wanted { urgency, parameters: series.at(&curves.over, x), purpose })
+        Some(Wanted { urgency, parameters: series.at(x)?, purpose })
     };
     urgencies.into_iter().enumerate().filter(|(_, (urgency, _))| *urgency > ROUNDING).map(point).collect()
 }
@@ -154,28 +168,61 @@ fn errors_of_lines(known: &[(f64, f64)]) -> Vec<Option<f64>> {
         .collect()
 }
 
-/// The points that the boundaries of a series ask for, likewise.
-fn on_boundaries(series: &Series<'_>, boundaries: &Boundaries) -> Vec<Option<Wanted>> {
-    let (known, unknown) = series.known(|row| kind(row, boundaries.between));
+/// The points that the boundaries of a series ask for, likewise. `kind` is what they are boundaries of. Where neighbours are too far from
+/// each other, there are steps first.
+fn on_boundaries<P: Point>(
+    series: &Series<'_, P>,
+    boundaries: &Boundaries,
+    kind: impl Fn(&P) -> Option<Kind>,
+) -> Vec<Option<Wanted>> {
+    let point = |x: f64, urgency: f64, purpose: &'static str| {
+        Some(Wanted { urgency, parameters: series.at(x)?, purpose })
+    };
     let mut found = Vec::new();
+    let mut wide = Vec::new();
+    for pair in series.points.windows(2) {
+        let range = [pair[0].0, pair[1].0];
+        let steps = boundaries.largest_step.map_or_else(Vec::new, |largest| steps(range, largest));
+        wide.extend((!steps.is_empty()).then_some(range));
+        found.extend(steps.into_iter().map(|x| point(x, UNKNOWN, "step")));
+    }
+    let (known, unknown) = series.known(kind);
     for (index, pair) in known.windows(2).enumerate().filter(|(_, pair)| pair[0].1.name != pair[1].1.name) {
         let [low, high] = [pair[0].0, pair[1].0];
-        let width = high - low;
-        if width <= boundaries.within * ROUNDING {
+        let (width, within) = (high - low, within(series, boundaries, [low, high]));
+        if width <= within * ROUNDING || wide.iter().any(|[from, to]| low <= *from && *to <= high) {
             continue;
         }
         let rates: Vec<(f64, f64)> = known[index.saturating_sub(1)..(index + 3).min(known.len())]
             .iter()
             .filter_map(|(x, kind)| Some((*x, kind.rate_per_s?)))
             .collect();
-        let shares = shares([low, high], boundaries.within, &rates);
-        found.extend(shares.into_iter().map(|share| {
-            let x = inside([low, high], &unknown, share, boundaries.within)?;
-            let parameters = series.at(&boundaries.over, x);
-            Some(Wanted { urgency: width / boundaries.within, parameters, purpose: "boundary" })
-        }));
+        found.extend(
+            shares([low, high], within, &rates).into_iter().map(|share| {
+                point(inside([low, high], &unknown, share, within)?, width / within, "boundary")
+            }),
+        );
     }
     found
+}
+
+/// The width within which a boundary in an interval is to be known.
+fn within<P: Point>(series: &Series<'_, P>, boundaries: &Boundaries, [low, high]: [f64; 2]) -> f64 {
+    let of_share = |share: f64| {
+        let least = FINEST_PART * series.width_given([low, high]);
+        (share * low.abs().max(high.abs())).max(least)
+    };
+    boundaries.within.or(boundaries.within_share.map(of_share)).unwrap_or(f64::INFINITY)
+}
+
+/// Equal steps in an interval, none larger than `largest`; none if it is not longer than that.
+fn steps([low, high]: [f64; 2], largest: f64) -> Vec<f64> {
+    let count = ((high - low) / largest - (ROUNDING - 1.0)).ceil().min(MOST_STEPS);
+    let step = |step: u32| {
+        let x = low + (high - low) * f64::from(step) / count;
+        rounded(x, STEPS_ROUNDED_BY * largest)
+    };
+    (1..count as u32).map(step).collect()
 }
 
 /// Where a crossing is looked for in its range, as shares of the width: on both sides of the zero of the growth rates, if it is known;
@@ -238,7 +285,11 @@ fn inside([low, high]: [f64; 2], unknown: &[f64], share: f64, within: f64) -> Op
 
 #[cfg(test)]
 mod tests {
-    use super::{errors_of_lines, inside, shares};
+    use super::{Wanted, errors_of_lines, inside, on_boundaries, shares, steps};
+    use crate::report::Along;
+    use crate::study::{Boundaries, Side};
+    use crate::sweep::growth::series::{Kind, Point, position, series_along};
+    use serde_json::Value;
 
     /// Protects: the error of straight lines is that of a parabola, exactly.
     #[test]
@@ -299,5 +350,110 @@ mod tests {
         assert!(inside([0.0, 1.0], &[0.5, second], 0.5, 1.0).is_some());
         assert_eq!(inside([0.0, 1.0], &[0.25, 0.5, 0.75], 0.5, 1.0), None);
         assert_eq!(inside([0.0, 1.0], &[1.0, 2.0, -1.0], 0.5, 1.0), Some(0.5));
+    }
+
+    /// A point with its growth rate.
+    struct At {
+        parameters: Vec<(String, Value)>,
+        rate: f64,
+        is_given: bool,
+    }
+
+    impl Point for At {
+        fn parameters(&self) -> &[(String, Value)] {
+            &self.parameters
+        }
+
+        fn is_given(&self) -> bool {
+            self.is_given
+        }
+    }
+
+    /// The places of a series in which the boundary of stability is known as well as it is asked for, by ascending place, and the number of
+    /// waves that this takes. `rate` is the growth rate at a place.
+    fn narrowed(given: &[f64], own: &Boundaries, rate: impl Fn(f64) -> f64) -> (Vec<f64>, usize) {
+        let along = Along { parameter: own.over.clone(), with: Vec::new() };
+        let at = |x: f64, is_given: bool| {
+            let parameters = vec![("omega_rpm".to_owned(), 7.into()), (own.over.clone(), x.into())];
+            At { parameters, rate: rate(x), is_given }
+        };
+        let kind = |point: &At| {
+            let name = if point.rate < 0.0 { "stable" } else { "unstable" };
+            Some(Kind { name: name.to_owned(), rate_per_s: Some(point.rate) })
+        };
+        let mut points: Vec<At> = given.iter().map(|x| at(*x, true)).collect();
+        for wave in 0..20 {
+            let series = series_along(&points, &along);
+            let wanted: Vec<Wanted> = on_boundaries(&series[0], own, kind).into_iter().flatten().collect();
+            if wanted.is_empty() {
+                return (series[0].points.iter().map(|(x, _)| *x).collect(), wave);
+            }
+            assert!(wanted.iter().all(|one| one.purpose != "boundary") || wanted.len() <= 2, "{wanted:?}");
+            let places: Vec<f64> =
+                wanted.iter().filter_map(|one| position(&along, &one.parameters)).collect();
+            points.extend(places.into_iter().map(|x| at(x, false)));
+        }
+        panic!("the waves do not end")
+    }
+
+    /// A boundary of stability that is to be known to 0.2 %.
+    fn to_a_share(over: &str, largest_step: Option<f64>) -> Boundaries {
+        let (over, between, within_share) = (over.to_owned(), Side::Stability, Some(0.002));
+        Boundaries { over, between, within: None, within_share, largest_step }
+    }
+
+    /// The points on both sides of a threshold.
+    fn sides(places: &[f64], threshold: f64) -> [f64; 2] {
+        let below = places.iter().copied().filter(|x| *x <= threshold).fold(f64::NEG_INFINITY, f64::max);
+        [below, places.iter().copied().filter(|x| *x > threshold).fold(f64::INFINITY, f64::min)]
+    }
+
+    /// Protects: a boundary is known to a share of its value after few waves of at most two points, also where the growth rate bends at
+    /// it as that of two modes that become one, and a boundary that is known gets no more points. A grid of steps of 0.25 of μ has
+    /// points between them first.
+    #[test]
+    fn few_waves_find_a_threshold() {
+        for threshold in [0.100_3, 0.123_4, 0.271, 0.299_9, 0.549_9] {
+            let rate = |mu: f64| {
+                let beyond = (mu - threshold + 0.001).max(0.0).sqrt();
+                -800.0 + 800.0 * beyond / 0.001_f64.sqrt()
+            };
+            let own = to_a_share("mu", Some(0.05));
+            let (places, waves) = narrowed(&[0.05, 0.3, 0.55, 0.7], &own, rate);
+            assert!(places.windows(2).all(|pair| pair[1] - pair[0] < 0.050_001), "{places:?}");
+            let [below, above] = sides(&places, threshold);
+            assert!(above - below <= 1.01 * 0.002 * above, "{threshold}: {below} to {above}");
+            assert!(waves <= 10 && places.len() <= 30, "{threshold}: {waves} waves, {places:?}");
+        }
+        let (places, waves) = narrowed(&[0.1, 0.2], &to_a_share("mu", None), |_| -1.0);
+        assert_eq!((places, waves), (vec![0.1, 0.2], 0));
+    }
+
+    /// Protects: where sliding becomes stable again is narrowed down as well, along any parameter, and tiny numbers keep their digits.
+    #[test]
+    fn a_threshold_downwards_is_found_too() {
+        let rate = |beta_r_s: f64| 500.0 * (3.3e-8 - beta_r_s) / 1.0e-8;
+        let own = to_a_share("beta_r_s", None);
+        let (places, _) = narrowed(&[2.0e-8, 4.0e-8, 8.0e-8], &own, rate);
+        let [below, above] = sides(&places, 3.3e-8);
+        assert!(above - below <= 1.01 * 0.002 * above, "{below} to {above}");
+    }
+
+    /// Protects: the waves of a boundary at zero end, although no share of zero is a width.
+    #[test]
+    fn a_boundary_at_zero_ends() {
+        let rate = |x: f64| if x > 0.0 { 1.0 } else { -1.0 };
+        let (places, waves) = narrowed(&[-0.5, 0.5], &to_a_share("tilt_deg", None), rate);
+        let [below, above] = sides(&places, 0.0);
+        assert!(above - below <= 1.0 / 4096.0 && waves <= 13, "{below} to {above}: {waves} waves");
+    }
+
+    /// Protects: no step is larger than the largest, and intervals that are short enough get none.
+    #[test]
+    fn wide_intervals_get_steps() {
+        assert_eq!(steps([0.25, 0.4], 0.05), [0.3, 0.35]);
+        assert_eq!(steps([0.2, 0.32], 0.05), [0.24, 0.28]);
+        assert_eq!(steps([0.1, 0.15], 0.05), [0.0; 0]);
+        assert_eq!(steps([0.0, 1.0e9], 0.05).len(), 999);
     }
 }

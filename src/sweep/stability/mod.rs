@@ -2,21 +2,19 @@
 //! unstable or stable.
 //!
 //! ```text
-//! plan of the modes ──► StabilitySweep (ladder, stored points) ──► queue ──► points ──► report (thresholds, tables)
-//!                                 ▲                                            │
-//!                                 └───────── waves near the crossings ◄────────┘
+//! plan of the modes ──► plan_thresholds (way, tolerance, stored points) ──► queue ──► points ──► report (thresholds, tables)
+//!                                                                            │ ▲
+//!                                                                            ▼ │ waves near the crossings
+//!                                                                           growth
 //! ```
 //!
-//! All points are jobs of an ordinary study, whose name ends in `-stability`. It only grows: points that were computed
-//! before stay in it as long as the study has their speed and their other parameters.
+//! All points are jobs of an ordinary study, whose name ends in `-stability`, and which grows as other studies do. Points that were
+//! computed before stay in it as long as the study has their speed and their other parameters.
 
 mod along;
-mod ladder;
 mod points;
-mod sweep;
-mod waves;
+mod thresholds;
 
-pub use along::{natural as natural_way, ways as ways_to_thresholds};
+pub use along::{way_of, ways as ways_to_thresholds};
 pub use points::{name_of_modes, read_stability};
-pub use sweep::StabilitySweep;
-pub use waves::WAVES;
+pub use thresholds::plan_thresholds;
