@@ -38,7 +38,7 @@ fn undisturbed(study: &Value) -> String {
 }
 
 /// The rows of an SQL statement on the database.
-fn read<T>(folder: &Folder, statement: &'static str) -> Vec<T>
+pub fn read<T>(folder: &Folder, statement: &'static str) -> Vec<T>
 where
     T: Send + Unpin + for<'r> sqlx::FromRow<'r, sqlx::sqlite::SqliteRow>,
 {
