@@ -4,7 +4,7 @@ use super::checkpoint::Unreadable;
 use super::continuation;
 use super::error::{JobError, step_count};
 use super::lanes::{AnyLanes, Ended, one_lane};
-use super::nested::{Beginning, COST, CoarseStart, coarser};
+use super::nested::{Beginning, CoarseStart, coarser, cost, is_same_width};
 use super::record::JobRecord;
 use super::stability::{Structures, Verdict, judge};
 use super::workload::Workload;
@@ -130,7 +130,8 @@ impl Batch {
         }
         match self.coarser_of(&spec) {
             Some(coarser) => match coarser.begin(ticket, spec) {
-                Some(refused) => self.begin_own(refused),
+                Some(Prepared::GoesOn(ready)) => self.begin_own(*ready),
+                Some(Prepared::Reached(record)) => Ok(Begun::Decided(record)),
                 None => Ok(Begun::Runs),
             },
             None => self.begin_own(Ready { ticket, spec, beginning: Beginning::REST }),
@@ -141,7 +142,7 @@ impl Batch {
     fn coarser_of(&mut self, spec: &JobSpec) -> Option<&mut CoarserBatch> {
         coarser(spec)?;
         if self.coarser.is_none() {
-            self.coarser = CoarserBatch::of(spec);
+            self.coarser = CoarserBatch::of(spec, self.structures.clone());
         }
         self.coarser.as_mut()
     }
@@ -216,9 +217,12 @@ impl Batch {
     /// Advances all jobs by a few steps and returns those that ended.
     pub fn advance(&mut self) -> Vec<Ended> {
         let mut ended = Vec::new();
-        for ready in self.coarser.as_mut().map(CoarserBatch::advance).unwrap_or_default() {
-            let ticket = ready.ticket;
-            let result = match self.begin_own(ready) {
+        for (ticket, prepared) in self.coarser.as_mut().map(CoarserBatch::advance).unwrap_or_default() {
+            let begun = match prepared {
+                Prepared::GoesOn(ready) => self.begin_own(*ready),
+                Prepared::Reached(record) => Ok(Begun::Decided(record)),
+            };
+            let result = match begun {
                 Ok(Begun::Runs) => continue,
                 Ok(Begun::Decided(record)) => Ok(*record),
                 Err(error) => Err(error),
@@ -253,17 +257,21 @@ const TURNS: usize = 8;
 ///
 /// # Errors
 /// [`JobError::Interrupted`].
-pub fn beginning(
+pub(super) fn prepared(
     spec: &JobSpec,
+    structures: &Structures,
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
-) -> Result<Beginning, JobError> {
-    let Some(mut coarser) = CoarserBatch::of(spec) else { return Ok(Beginning::REST) };
-    if let Some(ready) = coarser.begin(0, spec.clone()) {
-        return Ok(ready.beginning);
+) -> Result<Prepared, JobError> {
+    let at_rest = || Ready { ticket: 0, spec: spec.clone(), beginning: Beginning::REST };
+    let Some(mut coarser) = CoarserBatch::of(spec, structures.clone()) else {
+        return Ok(Prepared::GoesOn(Box::new(at_rest())));
+    };
+    if let Some(prepared) = coarser.begin(0, spec.clone()) {
+        return Ok(prepared);
     }
     loop {
-        if let Some(ready) = coarser.advance().pop() {
-            return Ok(ready.beginning);
+        if let Some((_, prepared)) = coarser.advance().pop() {
+            return Ok(prepared);
         }
         let spent_s = coarser.simulated().map(|(_, spent_s)| spent_s).fold(0.0, f64::max);
         if progress(spent_s).is_break() {
@@ -285,16 +293,24 @@ struct Preparing {
 }
 
 /// A job that can begin on its own mesh.
-struct Ready {
+pub(super) struct Ready {
     pub ticket: u64,
     pub spec: JobSpec,
     pub beginning: Beginning,
 }
 
+/// What becomes of a job after its run on the coarser mesh.
+pub(super) enum Prepared {
+    /// It goes on on its own mesh.
+    GoesOn(Box<Ready>),
+    /// Its result on the coarser mesh is as exact as it asks for.
+    Reached(Box<JobRecord>),
+}
+
 impl CoarserBatch {
     /// The batch on the coarser mesh of a job; none if the job starts from rest.
-    pub fn of(spec: &JobSpec) -> Option<Self> {
-        let batch = Batch::new(&coarser(spec)?).ok()?;
+    pub fn of(spec: &JobSpec, structures: Structures) -> Option<Self> {
+        let batch = Batch::sharing(&coarser(spec)?, structures).ok()?;
         Some(Self { batch: Box::new(batch), jobs: BTreeMap::new() })
     }
 
@@ -303,29 +319,27 @@ impl CoarserBatch {
         self.jobs.len()
     }
 
-    /// Begins a job. Returns it if the coarser mesh refuses it: it is ready to begin from rest.
-    pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Option<Ready> {
+    /// Begins a job. Returns it if there is no run: the coarser mesh refuses it, or eigenvalues decide it.
+    pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Option<Prepared> {
         let job = Preparing { coarse: coarser(&spec)?, spec };
-        match self.batch.begin(ticket, job.coarse.clone()) {
+        let result = match self.batch.begin(ticket, job.coarse.clone()) {
             Ok(Begun::Runs) => {
                 self.jobs.insert(ticket, job);
-                None
+                return None;
             }
-            // Nothing decides a coarser job without a run.
-            Ok(Begun::Decided(record)) => {
-                Some(job.ready(Ended { ticket, result: Ok(*record), motion: None }))
-            }
-            Err(error) => Some(job.ready(Ended { ticket, result: Err(error), motion: None })),
-        }
+            Ok(Begun::Decided(record)) => Ok(*record),
+            Err(error) => Err(error),
+        };
+        Some(job.prepared(Ended { ticket, result, motion: None }))
     }
 
-    /// Advances all jobs and returns those that ended.
-    pub fn advance(&mut self) -> Vec<Ready> {
+    /// Advances all jobs and returns those that ended, with their tickets.
+    pub fn advance(&mut self) -> Vec<(u64, Prepared)> {
         for _ in 0..TURNS {
             let ended = self.batch.advance();
             if !ended.is_empty() {
-                let ready = |end: Ended| Some(self.jobs.remove(&end.ticket)?.ready(end));
-                return ended.into_iter().filter_map(ready).collect();
+                let prepared = |end: Ended| Some((end.ticket, self.jobs.remove(&end.ticket)?.prepared(end)));
+                return ended.into_iter().filter_map(prepared).collect();
             }
         }
         Vec::new()
@@ -351,26 +365,43 @@ impl CoarserBatch {
 
     /// The time \[s\] of every job, by its ticket, that it could have simulated on its own mesh meanwhile.
     pub fn simulated(&self) -> impl Iterator<Item = (u64, f64)> + '_ {
-        self.batch.simulated().into_iter().map(|(ticket, simulated_s)| (ticket, COST * simulated_s))
+        let spent = |(ticket, simulated_s): (u64, f64)| {
+            let job = self.jobs.get(&ticket)?;
+            let [own, coarse] = [&job.spec, &job.coarse].map(|spec| spec.scene.pin.elements);
+            Some((ticket, cost(own, coarse) * simulated_s))
+        };
+        self.batch.simulated().into_iter().filter_map(spent)
     }
 }
 
 impl Preparing {
-    fn ready(self, end: Ended) -> Ready {
+    fn prepared(self, end: Ended) -> Prepared {
+        if let Ok(record) = &end.result
+            && record.accuracy_reached == Some(true)
+        {
+            return Prepared::Reached(Box::new(end.result.expect("it is a record")));
+        }
         let [from, to] = [&self.coarse, &self.spec].map(|spec| {
             let pin = &spec.scene.pin;
             BlockMesh::new(pin.extent_m(), pin.elements)
         });
-        let record = end.result.as_ref().ok();
+        let width_m = |spec: &JobSpec| Model::clamp_width_on_mesh_m(&spec.scene).ok();
+        let record = end.result.ok();
         let start = CoarseStart {
-            elements: from.elements(),
-            outcome: record.map(|record| record.outcome),
-            simulated_s: record.map_or(0.0, |record| record.simulated_s),
-            mu_star: record.map(|record| record.mu_star),
-            frequency_hz: record.and_then(|record| record.frequency_hz),
+            elements: self.coarse.scene.pin.elements,
+            outcome: record.as_ref().map(|record| record.outcome),
+            only_compared: !self.spec.starts_in_motion(),
+            regime: record.as_ref().map(|record| record.regime),
+            same_clamp: width_m(&self.coarse)
+                .zip(width_m(&self.spec))
+                .map(|(coarse, own)| is_same_width(coarse, own)),
+            simulated_s: record.as_ref().map_or(0.0, |record| record.simulated_s),
+            mu_star: record.as_ref().map(|record| record.mu_star),
+            frequency_hz: record.as_ref().and_then(|record| record.frequency_hz),
+            start: record.and_then(|record| record.start).map(Box::new),
         };
         let motion = end.motion.filter(|_| start.is_used()).map(|motion| motion.interpolated(&from, &to));
         let beginning = Beginning { motion, start: Some(start) };
-        Ready { ticket: end.ticket, spec: self.spec, beginning }
+        Prepared::GoesOn(Box::new(Ready { ticket: end.ticket, spec: self.spec, beginning }))
     }
 }

@@ -1,6 +1,6 @@
 //! One job from its specification to its record.
 
-use super::batch::beginning;
+use super::batch::{Prepared, prepared};
 use super::error::{JobError, step_count};
 use super::lanes::{Moment, one_lane};
 use super::record::JobRecord;
@@ -48,8 +48,15 @@ pub fn solve(spec: &JobSpec, observer: &mut dyn JobObserver) -> Result<JobRecord
     }
     let mut lanes = one_lane(model, spec.numerics.precision);
     step_count(spec.limit_of_run_s(), lanes.model().time_step_s())?;
-    let beginning = beginning(spec, &mut |spent_s| observer.progress(spent_s))?;
-    let verdict = judge(spec, lanes.model(), &beginning, &Structures::default())?;
+    let structures = Structures::default();
+    let beginning = match prepared(spec, &structures, &mut |spent_s| observer.progress(spent_s))? {
+        Prepared::GoesOn(ready) => ready.beginning,
+        Prepared::Reached(record) if observer.needs_run() => {
+            return solve(&on_mesh_of(spec, &record), observer);
+        }
+        Prepared::Reached(record) => return Ok(*record),
+    };
+    let verdict = judge(spec, lanes.model(), &beginning, &structures)?;
     let stability = match if observer.needs_run() { verdict.with_run() } else { verdict } {
         Verdict::Decided(record) => return Ok(*record),
         Verdict::Undecided(stability) => stability,
@@ -69,4 +76,28 @@ pub fn solve(spec: &JobSpec, observer: &mut dyn JobObserver) -> Result<JobRecord
             return Err(JobError::Interrupted);
         }
     }
+}
+
+/// The job on the mesh on which its accuracy is reached, or else on its finest one, without asking for an accuracy: what an observer sees
+/// of it.
+///
+/// # Errors
+/// As [`solve`].
+pub fn on_final_mesh(
+    spec: &JobSpec,
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<JobSpec, JobError> {
+    if spec.accuracy.is_none() {
+        return Ok(spec.clone());
+    }
+    Ok(match prepared(spec, &Structures::default(), progress)? {
+        Prepared::GoesOn(_) => JobSpec { accuracy: None, ..spec.clone() },
+        Prepared::Reached(record) => on_mesh_of(spec, &record),
+    })
+}
+
+fn on_mesh_of(spec: &JobSpec, record: &JobRecord) -> JobSpec {
+    let mut own = JobSpec { accuracy: None, ..spec.clone() };
+    own.scene.pin.elements = record.elements.unwrap_or(own.scene.pin.elements);
+    own
 }

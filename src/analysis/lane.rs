@@ -128,6 +128,11 @@ impl LaneAnalysis {
         self.start.as_ref()
     }
 
+    /// Time \[s\] that the job could have simulated meanwhile on its own mesh, about.
+    pub fn spent_s(&self) -> f64 {
+        self.start.as_ref().map_or(0.0, |start| start.spent_s(self.spec.scene.pin.elements))
+    }
+
     /// Adds the job's specification to an analysis that was read from a checkpoint, which does not contain
     /// it.
     #[must_use]
@@ -238,6 +243,7 @@ impl LaneAnalysis {
             steps,
             time_step_s: model.time_step_s(),
             time_step_limit_s: model.time_step_limit_s(),
+            elements: self.spec.scene.pin.own_elements(),
             clamp_width_m: model.clamp_width_m(),
             energy_residual: energies.relative_residual(),
             macroscopic_identity_residual: if self.spec.scene.contact.law.is_always_mu() {
@@ -254,6 +260,7 @@ impl LaneAnalysis {
             growth_rate_per_s: self.monitor.as_ref().and_then(DecayMonitor::growth_rate_per_s),
             obstacle: (outcome == Outcome::NotPeriodic).then(|| self.obstacle()),
             stability: self.stability.clone(),
+            accuracy_reached: None,
             start: self.start.clone(),
             disk: model.ring().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),
             holder: holder_motion(&self.spec.scene.holder, figures),
@@ -261,6 +268,7 @@ impl LaneAnalysis {
             energy: totals(energies),
             nodes: observed_nodes(figures),
         }
+        .judged_by(self.spec.accuracy)
     }
 
     /// Crossings of N = F in one limit cycle; 1 if there is none. In a cycle of the holder it is the nearest whole number.

@@ -9,7 +9,7 @@ use super::checkpoint::{self, Unreadable};
 use super::drive::{IDLE, drive, follow};
 use super::error::{JobError, step_count};
 use super::lane::LaneAnalysis;
-use super::nested::{Beginning, CoarseStart, under_way};
+use super::nested::{Beginning, under_way};
 use super::noted::Noted;
 use super::record::{JobRecord, Outcome};
 use super::sample::{NodeSample, Sample, Sampler};
@@ -355,7 +355,7 @@ impl<const L: usize, R: RunNumber> AnyLanes for LanesOf<L, R> {
         let runs = self.runs.iter().enumerate();
         let all = runs.filter_map(|(lane, run)| {
             let run = run.as_ref()?;
-            let spent_s = run.analysis.start().map_or(0.0, CoarseStart::spent_s);
+            let spent_s = run.analysis.spent_s();
             Some((run.ticket, spent_s + self.state.steps_done(lane) as f64 * dt))
         });
         all.collect()

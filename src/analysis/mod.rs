@@ -38,6 +38,7 @@ mod job;
 pub mod lane;
 pub mod lanes;
 pub mod lines;
+mod mesh_error;
 pub mod nested;
 mod noted;
 mod outcome;
@@ -55,8 +56,9 @@ pub use build::Build;
 pub use checkpoint::Unreadable;
 pub use drive::{drive, drive_at};
 pub use error::JobError;
-pub use job::{JobObserver, Unobserved, solve};
+pub use job::{JobObserver, Unobserved, on_final_mesh, solve};
 pub use lanes::Moment;
+pub use mesh_error::{MeshError, UnknownError};
 pub use nested::CoarseStart;
 pub use noted::Noted;
 pub use record::{

@@ -3,39 +3,55 @@
 //! The coarser run is a part of the job. Its specification follows from that of the job alone, and it starts in the same way
 //! from a still coarser mesh. If it does not end in a limit cycle, the job starts from rest.
 
-use super::outcome::Outcome;
+use super::outcome::{Outcome, Regime};
 use crate::solver::{Model, PinMotion};
 use crate::spec::{JobSpec, Numerics, StabilityMethod};
 use serde::{Deserialize, Serialize};
 
-/// Time of a run on a coarser mesh over the time of a run on the job's mesh that simulates as long: an eighth of the nodes
-/// and half of the steps.
-pub(super) const COST: f64 = 1.0 / 16.0;
+/// Time of a run on a coarser mesh over the time of a run on the job's mesh that simulates as long: it has fewer nodes and fewer steps.
+pub(super) fn cost(own: [usize; 3], coarser: [usize; 3]) -> f64 {
+    let elements = |counts: [usize; 3]| counts.map(|n| n as f64).iter().product::<f64>();
+    let share = elements(coarser) / elements(own);
+    share * libm::cbrt(share)
+}
 
-/// How the run on a coarser mesh ended, from which a job was to start.
+/// How the run on a coarser mesh ended that came before the job's own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CoarseStart {
     /// Elements of the coarser mesh in x, y and z.
     pub elements: [usize; 3],
-    /// How its run ended; none if it failed. The job started from rest unless it was periodic.
+    /// How its run ended; none if it failed.
     pub outcome: Option<Outcome>,
+    /// Whether the job started from rest in any case, because a motion on another mesh is not enough for it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub only_compared: bool,
     /// Simulated time \[s\] of that run, which is not part of the job's simulated time.
     pub simulated_s: f64,
+    /// The contact regime there; none if the run failed, and in records of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub regime: Option<Regime>,
+    /// Whether the clamp on that mesh is as wide as on the job's own. Earlier versions did not keep it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub same_clamp: Option<bool>,
     /// Macroscopic friction coefficient μ* on the coarser mesh.
     pub mu_star: Option<f64>,
     /// Fundamental frequency \[Hz\] on the coarser mesh.
     pub frequency_hz: Option<f64>,
+    /// The run on a still coarser mesh that came before, if there was one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Box<CoarseStart>>,
 }
 
 impl CoarseStart {
     /// Whether the job started from the limit cycle of the coarser mesh.
     pub fn is_used(&self) -> bool {
-        self.outcome == Some(Outcome::Periodic)
+        self.outcome == Some(Outcome::Periodic) && !self.only_compared
     }
 
     /// Time \[s\] that the job could have simulated on its own mesh meanwhile, about.
-    pub(super) fn spent_s(&self) -> f64 {
-        COST * self.simulated_s
+    pub(super) fn spent_s(&self, own: [usize; 3]) -> f64 {
+        let before_s = self.start.as_ref().map_or(0.0, |start| start.spent_s(own));
+        before_s + cost(own, self.elements) * self.simulated_s
     }
 }
 
@@ -61,15 +77,32 @@ pub(super) fn under_way(mut spec: JobSpec, start: Option<&CoarseStart>) -> JobSp
     spec
 }
 
-/// The same job on the coarser mesh from which it starts; none if it starts from rest or has no run.
+/// The same job on a coarser mesh, which it runs on first; none if it has no run there.
 pub fn coarser(spec: &JobSpec) -> Option<JobSpec> {
-    let elements = spec.coarser_elements()?;
     let mut coarse = spec.clone();
-    coarse.scene.pin.elements = elements;
     if coarse.numerics.time_step_s.take().is_some() {
         coarse.numerics.safety_factor = Numerics::default().safety_factor;
     }
     coarse.run.stop_early = true;
-    coarse.stability = StabilityMethod::Simulate;
-    Model::check_clamp(&coarse.scene).is_ok().then_some(coarse)
+    // The coarser run of a job that asks for an accuracy may be its last one.
+    if spec.accuracy.is_none() {
+        coarse.stability = StabilityMethod::Simulate;
+    }
+    let with = |elements| {
+        let mut coarse = coarse.clone();
+        coarse.scene.pin.elements = elements;
+        let width_m = coarse.check().ok().and_then(|()| Model::clamp_width_on_mesh_m(&coarse.scene).ok())?;
+        Some((coarse, width_m))
+    };
+    let mut found: Vec<_> = spec.coarser_elements().into_iter().filter_map(with).collect();
+    let own_m = Model::clamp_width_on_mesh_m(&spec.scene).ok()?;
+    let best = found.iter().position(|(_, width_m)| is_same_width(*width_m, own_m));
+    // Where the clamp is another one, a run can start from the motion, but its difference says nothing of the mesh.
+    let best = best.or((spec.accuracy.is_none() && !found.is_empty()).then_some(0))?;
+    Some(found.swap_remove(best).0)
+}
+
+/// Whether two widths of the clamp are the same but for rounding.
+pub(super) fn is_same_width(a_m: f64, b_m: f64) -> bool {
+    (a_m - b_m).abs() <= 1.0e-9 * b_m
 }

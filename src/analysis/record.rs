@@ -158,6 +158,9 @@ pub struct JobRecord {
     pub time_step_s: f64,
     /// The stability limit \[s\] of the operator used.
     pub time_step_limit_s: f64,
+    /// Elements of the pin's mesh in x, y and z; none of a mesh from a file, and in records of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elements: Option<[usize; 3]>,
     /// Width \[m\] of the clamp on the mesh, which may differ from the specified one.
     pub clamp_width_m: f64,
     /// |Imbalance| of the energies over the energy put in.
@@ -184,7 +187,10 @@ pub struct JobRecord {
     /// The eigenvalues of steady sliding; none if they were not computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<SlidingStability>,
-    /// The run on a coarser mesh from which this one started; none if there was none.
+    /// Whether the error of the mesh is as small as the job asks for; none if it asks for no accuracy.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy_reached: Option<bool>,
+    /// The run on a coarser mesh that came before; none if there was none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<CoarseStart>,
     /// The elastic disk; none if the disk is rigid.

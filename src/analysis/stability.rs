@@ -138,6 +138,7 @@ pub fn judge(
                 stability.above_band = AboveBand::CoarserRun;
             }
             record.start.clone_from(&beginning.start);
+            let record = record.judged_by(spec.accuracy);
             Ok(match (record.non_finite_number(), is_safely_stable) {
                 (None, true) => Verdict::Decided(Box::new(record)),
                 (None, false) => Verdict::Undecided(Some(Noted {
@@ -282,6 +283,7 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
         steps: 0,
         time_step_s: if is_without_step { 0.0 } else { model.time_step_s() },
         time_step_limit_s: model.time_step_limit_s(),
+        elements: spec.scene.pin.own_elements(),
         clamp_width_m: model.clamp_width_m(),
         energy_residual: 0.0,
         macroscopic_identity_residual: if spec.scene.contact.law.is_always_mu() {
@@ -297,6 +299,7 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
         growth_rate_per_s: point.modes.first().map(growth),
         obstacle: None,
         stability: Some(stability),
+        accuracy_reached: None,
         start: None,
         windows: Vec::new(),
         disk: model.ring().map(|body| elastic_disk(body, &Solves::default(), 1)),

@@ -101,7 +101,7 @@ impl Workload {
     /// # Errors
     /// If the mesh has no node row near the clamp's width. Other reasons to refuse the model are not found.
     pub fn estimate(spec: &JobSpec) -> Result<Self, JobError> {
-        Model::check_clamp(&spec.scene)?;
+        Model::clamp_width_on_mesh_m(&spec.scene)?;
         let pin = &spec.scene.pin;
         let wave_speed =
             elasticity::pressure_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);

@@ -17,6 +17,16 @@ pub(crate) fn parse_setting(text: &str) -> Result<(String, String), String> {
     }
 }
 
+/// Reads an accuracy, 1% or 0.01, as a setting.
+pub(crate) fn parse_accuracy(text: &str) -> Result<(String, String), String> {
+    let share = match text.trim().strip_suffix('%') {
+        Some(percent) => percent.trim().parse::<f64>().map(|percent| percent / 100.0),
+        None => text.trim().parse::<f64>(),
+    };
+    let share = share.map_err(|_| "expected a share of μ*, for example 1% or 0.01".to_owned())?;
+    Ok(("accuracy_mu_star".to_owned(), share.to_string()))
+}
+
 /// Reads the name of a preset.
 pub(crate) fn parse_preset(text: &str) -> Result<Preset, String> {
     let names = || Preset::ALL.map(Preset::name).join(", ");

@@ -175,14 +175,11 @@ fn inspect_job(
     }
     let of_preset = args.preset.map_or_else(String::new, |preset| format!(", preset {}", preset.name()));
     let title = title(study, &job.parameters) + &of_preset;
-    let discretisation = sweep::discretisation_of(&job.spec);
     let header = PageHeader {
         title,
         made_with: worker::program(),
         key: job.key.clone(),
         sheet: sweep::sheet_of_job(&job.spec, |parameter| origin(args, study, job, parameter)),
-        mu_star_relative_error: discretisation.error().map(|error| error.mu_star_relative),
-        accuracy: discretisation.to_string(),
     };
     inspect::write(&inspection, folder, &header)?;
     let done = RowState::Done(Box::new(inspection.survey.record.clone()));

@@ -26,6 +26,10 @@ pub(crate) struct Args {
     /// Take mesh, time step and detection from a preset instead of the study; `--set` overrides the preset.
     #[arg(long, value_name = "NAME", value_parser = foreground::parse_preset)]
     preset: Option<Preset>,
+    /// Ask for an error of μ* by the mesh, for example 1%: each job goes from mesh to mesh until it is reached, instead of the mesh of the
+    /// study. `--set` can give the finest mesh.
+    #[arg(long, value_name = "ERROR", value_parser = foreground::parse_accuracy)]
+    accuracy: Option<(String, String)>,
     /// Write the time history as CSV: load, total normal and tangential forces (clamp_tangential_n at the
     /// clamp, contact_tangential_n and mu_eq at the contact), numbers of nodes in each state, and displacement,
     /// velocity, stress and state of the centres of the leading (front) and trailing (rear) edge.
@@ -42,7 +46,8 @@ pub(crate) struct Args {
 /// Solves the job and prints it as `show` does; nothing is stored.
 pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
     let study = Study::load(&args.study)?;
-    let spec = study.single_with_preset(args.preset, &args.settings)?;
+    let settings: Vec<_> = args.accuracy.iter().chain(&args.settings).cloned().collect();
+    let spec = study.single_with_preset(args.preset, &settings)?;
     warnings::of_job(&study, &spec);
     let interrupt = foreground::interrupt();
     let mut recorder = Recorder {

@@ -1,7 +1,7 @@
 //! The study of a command, with changes that the file need not have.
 
 use super::error::CliError;
-use super::foreground::{parse_preset, parse_setting};
+use super::foreground::{parse_accuracy, parse_preset, parse_setting};
 use crate::study::{Basins, Changes, Preset};
 use crate::sweep::Plan;
 use std::path::PathBuf;
@@ -20,6 +20,10 @@ pub(crate) struct StudyArgs {
     /// overrides the preset.
     #[arg(long, value_name = "NAME", value_parser = parse_preset)]
     preset: Option<Preset>,
+    /// Ask for an error of μ* by the mesh, for example 1%: each job goes from mesh to mesh until it is reached, instead of the mesh of the
+    /// study. `--set` can give the finest mesh.
+    #[arg(long, value_name = "ERROR", value_parser = parse_accuracy)]
+    accuracy: Option<(String, String)>,
     /// Instead of what the study says about further jobs, continue each of its points N times with random velocities, to find its
     /// limit cycles. The name becomes STUDY-basins.
     #[arg(long, value_name = "N", requires = "kick_m_s")]
@@ -53,7 +57,8 @@ impl StudyArgs {
     }
 
     fn changes(&self) -> Changes {
-        let (name, settings) = (self.name.clone(), self.settings.clone());
+        let (name, settings) =
+            (self.name.clone(), self.accuracy.iter().chain(&self.settings).cloned().collect());
         let basins = self.basins.zip(self.kick_m_s).map(|(kicks, kick_m_s)| Basins { kicks, kick_m_s });
         Changes { name, preset: self.preset, settings, is_of_modes: false, basins }
     }

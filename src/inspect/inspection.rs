@@ -6,7 +6,7 @@ use super::nodes::{NodeSelector, ObservedNode};
 use super::phases::{Instants, Phase, phases};
 use super::spectrum::Spectrum;
 use super::survey::{FEWEST_CYCLES, Survey, survey};
-use crate::analysis::JobError;
+use crate::analysis::{JobError, on_final_mesh};
 use crate::solver::Model;
 use crate::solver::body::pin::PinMesh;
 use crate::spec::{JobSpec, StabilityMethod};
@@ -88,6 +88,7 @@ impl Inspection {
         options: &Options,
         on_progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Self, InspectionError> {
+        let spec = &on_final_mesh(spec, on_progress)?;
         let nodes = nodes_of(spec, &options.nodes)?;
         // What happens in a run is shown. The eigenvalues of a job may change when it ends.
         let mut simulated = spec.clone();

@@ -23,10 +23,6 @@ pub struct PageHeader {
     pub key: String,
     /// What was simulated: drawings and all inputs.
     pub sheet: Sheet,
-    /// The largest error of μ\* that mesh and time step make, relative to μ\*, if it was measured with such a mesh.
-    pub mu_star_relative_error: Option<f64>,
-    /// What is known about the error that mesh and time step make, in a sentence; may be empty.
-    pub accuracy: String,
 }
 
 /// The page. `tables` are the CSV files that it contains, by name.
@@ -54,29 +50,30 @@ pub fn of(
     }));
     sections.push(Section::new("nodes", "Nodes in numbers", nodes(summary)));
     sections.push(Section::new("files", "Files", files(&header.made_with)));
-    let mut lead = lead(inspection, summary, header);
-    if !header.accuracy.is_empty() {
-        lead.push(Block::Text(Text::strong("Accuracy.").and(format!(" {}", header.accuracy))));
-    }
+    let lead = lead(inspection, summary);
     Page { title: header.title.clone(), lead, sections, ..Page::default() }
 }
 
-fn lead(inspection: &Inspection, summary: &Summary, header: &PageHeader) -> Vec<Block> {
+fn lead(inspection: &Inspection, summary: &Summary) -> Vec<Block> {
     let record = &summary.record;
     // As on the page of a report: numbers end at the digit in which the larger error begins.
-    let error =
-        record.mu_star_se.abs().max(header.mu_star_relative_error.unwrap_or(0.0) * record.mu_star.abs());
-    let finest = if header.mu_star_relative_error.is_some() { -4 } else { -3 };
+    let of_mesh = record.mesh_error();
+    let error = record.mu_star_se.abs().max(of_mesh.map_or(0.0, |of_mesh| of_mesh.mu_star));
+    let finest = if of_mesh.is_ok() { -4 } else { -3 };
     let place = last_place(error).unwrap_or(finest).clamp(finest, -1);
     let mu = number(summary.job.scene.contact.mu);
-    let error = significant(record.mu_star_se, 2);
+    let errors = format!(
+        "at μ = {mu}; errors: statistics {}, mesh {}",
+        significant(record.mu_star_se, 2),
+        of_mesh.map_or_else(|why| format!("unknown ({})", why.reason()), |own| significant(own.mu_star, 2))
+    );
     let frequency = record.frequency_hz.map_or_else(|| "none".to_owned(), |f| format!("{f:.0} Hz"));
     let shares = [record.stick_share, record.slip_share, record.separated_share];
     let shares = shares.map(|share| format!("{share:.2}")).join(" / ");
     let loops = format!("{} of {}", summary.face.counter_clockwise, summary.face.separating);
     let sense = "of the nodes that separate go counter-clockwise (y to the right, z upwards)";
     let tiles = vec![
-        Tile::new("μ*", at_place(record.mu_star, place), format!("at μ = {mu}; standard error {error}")),
+        Tile::new("μ*", at_place(record.mu_star, place), errors),
         Tile::new("frequency", frequency, "of the total normal force"),
         Tile::new("regime", record.regime.label(), record.outcome.label()),
         Tile::new("stick / slip / separated", shares, "shares of the node-time"),

@@ -1,65 +1,62 @@
 //! What a report says about the errors of its results.
 
-use super::discretisation::{Discretisation, MeshError, NOT_MEASURED};
 use super::row::JobRow;
+use crate::analysis::UnknownError;
 use crate::publish::value::{count, significant};
+use indexmap::IndexMap;
 
-/// Sentences about the errors of the results of these jobs: of mesh and time step, of the averages, and the rule for
-/// digits. Empty if there are no results.
+/// Sentences about the errors of the results of these jobs: of the mesh, of the averages, and the rule for digits. Empty if there are no
+/// results.
 pub(super) fn in_words(rows: &[JobRow]) -> Vec<String> {
-    let done: Vec<&JobRow> = rows.iter().filter(|row| row.record().is_some()).collect();
-    if done.is_empty() {
+    let records: Vec<_> = rows.iter().filter_map(JobRow::record).collect();
+    if records.is_empty() {
         return Vec::new();
     }
-    let mut sentences = of_presets(&done);
-    let unknown = done.iter().filter(|row| row.discretisation.error().is_none()).count();
-    if unknown == done.len() {
-        sentences.push(format!("Mesh and time step: {NOT_MEASURED}"));
-    } else if unknown > 0 {
-        sentences.push(format!("Mesh and time step of {unknown} of {} jobs: {NOT_MEASURED}", done.len()));
+    let mut unknown: IndexMap<&str, usize> = IndexMap::new();
+    let mut largest = [0.0_f64; 2];
+    for error in records.iter().map(|record| record.mesh_error()) {
+        match error {
+            Ok(own) => {
+                largest[0] = largest[0].max(own.mu_star);
+                largest[1] = largest[1].max(own.frequency_hz.unwrap_or(0.0));
+            }
+            Err(why) => *unknown.entry(UnknownError::reason(why)).or_default() += 1,
+        }
     }
-    let errors = done.iter().filter_map(|row| row.record()).map(|record| record.mu_star_se.abs());
+    let jobs_unknown: usize = unknown.values().sum();
+    let mut sentences = Vec::new();
+    if jobs_unknown < records.len() {
+        let of_frequency = match largest[1] {
+            0.0 => String::new(),
+            hz => format!(" and of a frequency at most {} Hz", significant(hz, 2)),
+        };
+        sentences.push(format!(
+            "Mesh: the error of μ* is at most {}{of_frequency}, from the runs on a coarser mesh. Such bounds hold for 95 % of jobs.",
+            significant(largest[0], 2)
+        ));
+    }
+    if jobs_unknown > 0 {
+        let reasons: Vec<String> =
+            unknown.iter().map(|(why, jobs)| format!("{why} ({})", count(*jobs, "job"))).collect();
+        sentences.push(format!(
+            "Mesh: the error of {jobs_unknown} of {} jobs is unknown: {}. Compare with a finer mesh before you use these numbers.",
+            records.len(),
+            reasons.join("; ")
+        ));
+    }
+    let errors = records.iter().map(|record| record.mu_star_se.abs());
     let largest = errors.filter(|se| se.is_finite()).fold(0.0, f64::max);
     sentences.push(format!(
         "Statistics: the standard error of μ* over the cycles is at most {}.",
         significant(largest, 2)
     ));
-    let unmeasured = if unknown > 0 {
-        " Where the error of mesh and time step is not measured, μ* has three decimals at most and a frequency four digits."
+    let few = if jobs_unknown > 0 {
+        " Where the error of the mesh is unknown, μ* has three decimals at most and a frequency four digits."
     } else {
         ""
     };
     sentences.push(format!(
-        "Digits: μ* and frequencies end at the digit in which the larger of the two errors begins.{unmeasured} jobs.csv has all digits."
+        "Digits: μ* and frequencies end at the digit in which the larger of the two errors begins.{few} jobs.csv has all digits."
     ));
     sentences
-}
-
-/// One sentence for each preset whose error was measured.
-fn of_presets(done: &[&JobRow]) -> Vec<String> {
-    let mut presets: Vec<(&MeshError, usize, usize)> = Vec::new();
-    for row in done {
-        let Some(error) = row.discretisation.error() else { continue };
-        let indicative = usize::from(matches!(row.discretisation, Discretisation::Indicative(_)));
-        match presets.iter_mut().find(|(known, ..)| *known == error) {
-            Some((_, jobs, others)) => (*jobs, *others) = (*jobs + 1, *others + indicative),
-            None => presets.push((error, 1, indicative)),
-        }
-    }
-    let sentence = |(error, jobs, others): &(&MeshError, usize, usize)| {
-        let which =
-            if *jobs == done.len() { String::new() } else { format!(" of {jobs} of {} jobs", done.len()) };
-        let note = match others {
-            0 => String::new(),
-            all if all == jobs => {
-                " This is indicative only: scene, friction or speed of these jobs are others.".to_owned()
-            }
-            some => format!(
-                " For {} it is indicative only, because of another scene, friction or speed.",
-                count(*some, "job")
-            ),
-        };
-        format!("Mesh and time step{which}: {error}{note}")
-    };
-    presets.iter().map(sentence).collect()
 }

@@ -20,7 +20,6 @@ mod comparison_files;
 mod described;
 mod digits;
 mod dimension;
-mod discretisation;
 mod explore;
 pub mod export;
 pub mod figure;
@@ -54,7 +53,6 @@ mod windows;
 mod words;
 
 pub use described::columns_of_files;
-pub use discretisation::{Discretisation, MeshError};
 pub use files::{Written, write, write_compared};
 pub use growth::{Basin, BranchPoint, Crossing, Endpoint, Findings, Minimum, basins};
 pub use input::Report;

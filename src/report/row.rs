@@ -1,9 +1,8 @@
 //! One job as a report sees it.
 
-use super::discretisation::Discretisation;
 use super::measurement::Measurement;
 use super::parameters::{Parameters, SOURCE};
-use crate::analysis::{JobRecord, Outcome};
+use crate::analysis::{JobRecord, MeshError, Outcome};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -24,8 +23,6 @@ pub struct JobRow {
     pub wall_s: Option<f64>,
     /// The job's numerics; none of a measured point, and of a job that is no part of a study.
     pub numerics: Option<JobNumerics>,
-    /// What is known about the error of its mesh, time step and detection.
-    pub discretisation: Discretisation,
     /// The wave in which the program added the job; 0 for a job that the study's author asked for.
     pub wave: u64,
     /// Why the program added the job: `curve`, `minimum`, `boundary`.
@@ -122,6 +119,11 @@ impl JobRow {
             RowState::Done(record) => Some(record),
             _ => None,
         }
+    }
+
+    /// The error that its mesh makes; none if there is no result, or if it is not known.
+    pub fn mesh_error(&self) -> Option<MeshError> {
+        self.record()?.mesh_error().ok()
     }
 
     /// Why what is stored of the job cannot be read; none if it can.

@@ -142,10 +142,10 @@ impl Scalar {
         error.filter(|x| x.is_finite()).map(f64::abs)
     }
 
-    /// The error of the value by mesh, time step and detection, if it was measured.
+    /// The error of the value by the mesh, if it is known.
     pub(super) fn mesh_error(&self, row: &JobRow) -> Option<f64> {
-        let error = row.discretisation.error()?;
-        self.shown.mesh_error.map(|relative| relative(error))
+        let own = SCALARS.iter().find(|own| own.shown.mesh_error_of == self.name)?;
+        row.record().and_then(|_| own.value(row))
     }
 
     /// Whether the value in a row counts for the range of an axis or of colours. The frequency of a run that is not

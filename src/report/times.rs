@@ -58,7 +58,6 @@ mod tests {
             state: RowState::Pending,
             wall_s,
             numerics: None,
-            discretisation: crate::report::Discretisation::NotMeasured,
             wave: 0,
             why: None,
             inputs: Vec::new(),

@@ -64,7 +64,7 @@ fn results(row: &JobRow, record: &JobRecord) -> Vec<String> {
     if record.frequency_hz.is_some() {
         lines.insert(1, format!("{} {}", digits::by_error(FREQUENCY, row), FREQUENCY.unit()));
     }
-    lines.push(errors(row, record));
+    lines.push(errors(record));
     lines.push(format!(
         "residuals: energy {}, identities {}",
         residual_text(record.energy_residual),
@@ -74,12 +74,12 @@ fn results(row: &JobRow, record: &JobRecord) -> Vec<String> {
 }
 
 /// Both errors of μ\*.
-fn errors(row: &JobRow, record: &JobRecord) -> String {
-    let mesh = match row.discretisation.error() {
-        Some(error) => format!("{} %", significant(100.0 * error.mu_star_relative, 2)),
-        None => "not measured".to_owned(),
+fn errors(record: &JobRecord) -> String {
+    let mesh = match record.mesh_error() {
+        Ok(error) => significant(error.mu_star, 2),
+        Err(unknown) => format!("unknown ({})", unknown.reason()),
     };
-    format!("errors of μ*: statistics {}, mesh and step {mesh}", significant(record.mu_star_se, 2))
+    format!("errors of μ*: statistics {}, mesh {mesh}", significant(record.mu_star_se, 2))
 }
 
 /// A residual with two digits. More digits say nothing about a number that should be zero.

@@ -103,12 +103,12 @@ impl Model {
         pin_mesh(&scene.pin)
     }
 
-    /// Checks whether the mesh of the scene's pin has a node row near the clamp's width, without building the model.
+    /// Width \[m\] of the clamp on the mesh of the scene's pin, without building the model.
     ///
     /// # Errors
-    /// If it has none.
-    pub fn check_clamp(scene: &Scene) -> Result<(), SolverError> {
-        clamp::clamped_strip(&pin_mesh(&scene.pin)?, &scene.clamp).map(drop)
+    /// If the mesh has no row of nodes near the clamp's width.
+    pub fn clamp_width_on_mesh_m(scene: &Scene) -> Result<f64, SolverError> {
+        clamp::clamped_strip(&pin_mesh(&scene.pin)?, &scene.clamp).map(|strip| strip.width_m)
     }
 }
 

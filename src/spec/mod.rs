@@ -13,6 +13,7 @@
 
 #![warn(clippy::disallowed_methods)]
 
+mod accuracy;
 mod base;
 mod check;
 mod contact;
@@ -31,6 +32,7 @@ mod roughness;
 mod scene;
 mod stability;
 
+pub use accuracy::Accuracy;
 pub use base::Base;
 pub(crate) use check::short;
 pub use check::{FieldError, Violations};
@@ -68,6 +70,9 @@ pub struct JobSpec {
     pub detection: Detection,
     /// How the job finds out whether its steady sliding is stable.
     pub stability: StabilityMethod,
+    /// How exact its result is to be; none if it is solved on one mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<Accuracy>,
     /// The job that it continues, and whether others can continue it; none for most jobs.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(skip)]
@@ -112,6 +117,10 @@ impl JobSpec {
                 "0.5 with a holder that moves, whose energies are kept for the central difference only",
             );
         }
+        if let Some(accuracy) = self.accuracy {
+            accuracy.check(&mut found);
+            self.check_levels(&mut found);
+        }
         if let Some(continuation) = &self.continuation {
             continuation.check(&mut found);
             if !self.keeps_no_past() || self.scene.disk.kind == DiskKind::Elastic {
@@ -128,17 +137,48 @@ impl JobSpec {
         self.numerics.beta2 != 0.5
     }
 
-    /// Elements of the coarser mesh from which the job starts; none if it starts from rest, has no run or too few elements. A
-    /// motion on another mesh is not enough for a law that uses the past, a holder that moves, a surface that is not flat, or a layer.
-    /// It is carried over between upright blocks of one material. A program begins from rest.
-    pub fn coarser_elements(&self) -> Option<[usize; 3]> {
-        let elements = self.scene.pin.elements.map(|n| n.div_ceil(2));
-        let is_nested = self.run.start == Start::Nested && self.stability != StabilityMethod::Modes;
-        let is_carried_over =
-            self.keeps_no_past() && self.scene.pin.base.is_flat() && self.scene.pin.is_plain_block();
-        let goes_on = self.continuation.is_some();
-        (is_nested && is_carried_over && !goes_on && elements.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS))
-            .then_some(elements)
+    /// The numbers of elements that a coarser mesh may have on which the job runs first, the best ones first; empty if it runs on none.
+    ///
+    /// A mesh of half as many elements in each direction is best. It may have no row of nodes at the clamp's edge, and two thirds one.
+    pub fn coarser_elements(&self) -> Vec<[usize; 3]> {
+        let is_asked = self.accuracy.is_some() || self.starts_in_motion();
+        if !is_asked || !self.has_run() || self.continuation.is_some() || !self.scene.program.is_constant() {
+            return Vec::new();
+        }
+        let Some(own) = self.scene.pin.own_elements() else { return Vec::new() };
+        let shares = [(1, 2), (2, 3)].map(|(share, of)| own.map(|n| (share * n).div_ceil(of)));
+        shares.into_iter().filter(|coarse| coarse.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS)).collect()
+    }
+
+    /// Whether the run starts from the limit cycle of the coarser mesh, and not from rest.
+    pub fn starts_in_motion(&self) -> bool {
+        self.run.start == Start::Nested && self.carries_motion()
+    }
+
+    /// Whether a motion on a coarser mesh is enough to start from. It is not for a law that uses the past, a holder that moves, a surface
+    /// that is not flat, or a layer. It is carried over between upright blocks of one material.
+    fn carries_motion(&self) -> bool {
+        self.keeps_no_past() && self.scene.pin.base.is_flat() && self.scene.pin.is_plain_block()
+    }
+
+    /// What an accuracy needs: a steady state, and meshes that the program makes.
+    fn check_levels(&self, found: &mut Violations) {
+        let refused = if !self.has_run() {
+            "absent for complex modes, which have no run"
+        } else if self.scene.pin.own_elements().is_none() {
+            "absent for a mesh from a file: the program makes no finer one of it"
+        } else if !self.scene.program.is_constant() {
+            "absent with scene.program: such a run has no steady state"
+        } else if self.continuation.is_some() {
+            "absent in a study with `continue`: its jobs begin in motions on one mesh"
+        } else if self.scene.disk.kind == DiskKind::Elastic {
+            "absent on an elastic disk, whose mesh has an error of its own"
+        } else if self.numerics.time_step_s.is_some() {
+            "absent with numerics.time_step_s: each mesh has its own time step"
+        } else {
+            return;
+        };
+        found.add("accuracy", "given", refused);
     }
 
     /// Whether there is a run. Modes alone have none, and nothing that only a run needs can forbid them.
@@ -395,6 +435,7 @@ impl JobSpec {
             run: RunControl::default(),
             detection: Detection::default(),
             stability: StabilityMethod::default(),
+            accuracy: None,
             continuation: None,
         }
     }

@@ -143,6 +143,11 @@ impl Pin {
         [self.tilt_x_deg, self.tilt_y_deg].into_iter().flatten().any(|angle| angle != 0.0)
     }
 
+    /// Elements in x, y and z; returns `None` if the mesh is from a file.
+    pub fn own_elements(&self) -> Option<[usize; 3]> {
+        (self.shape != Shape::Mesh).then_some(self.elements)
+    }
+
     /// Extent \[m\] in x, y and z, without tilt.
     pub fn extent_m(&self) -> [f64; 3] {
         let of_mesh = self.mesh.as_ref().and_then(|mesh| mesh.extent_m);

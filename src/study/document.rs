@@ -6,11 +6,12 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::Value;
 
 /// The top-level fields in the order in which a document is written; others come before the grid.
-const ORDER: [&str; 10] = [
+const ORDER: [&str; 11] = [
     "$schema",
     "name",
     "description",
     "preset",
+    "accuracy",
     "damping",
     "scene",
     "numerics",

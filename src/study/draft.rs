@@ -2,6 +2,7 @@
 
 use super::file::StudyFile;
 use super::parameter::{PARAMETERS, Parameter};
+use super::preset::Preset;
 use super::time_defaults;
 use crate::spec::{FieldError, JobSpec};
 use serde::Deserialize;
@@ -9,8 +10,8 @@ use serde_json::{Map, Value};
 use std::collections::HashSet;
 
 /// The parts of a study that describe a job.
-pub(super) const PARTS: [&str; 7] =
-    ["preset", "damping", "scene", "numerics", "run", "detection", "stability"];
+pub(super) const PARTS: [&str; 8] =
+    ["preset", "damping", "scene", "numerics", "run", "detection", "stability", "accuracy"];
 
 /// A job before it has all its values: everything that a study says about it, before presets, damping and the defaults
 /// that depend on other values give the rest.
@@ -57,9 +58,9 @@ impl Draft {
 
     /// The job: what is given comes before the preset and the damping, and these before the defaults.
     pub(super) fn resolve(&self) -> Resolved {
-        let StudyFile { preset, damping, scene, numerics, run, detection, stability, .. } =
+        let StudyFile { preset, damping, scene, numerics, run, detection, stability, accuracy, .. } =
             decode(&self.values);
-        let mut spec = JobSpec { scene, numerics, run, detection, stability, continuation: None };
+        let mut spec = JobSpec { scene, numerics, run, detection, stability, accuracy, continuation: None };
         let gives = |name: &str| self.given.contains(name);
         let mut violations = Vec::new();
         if let Some(preset) = preset {
@@ -68,8 +69,16 @@ impl Draft {
         if let Some(damping) = damping {
             violations.extend(damping.fill(&mut spec.numerics, gives("beta_r_s")).err());
         }
-        if let Some(preset) = preset {
-            // A job without damping is solved in another way.
+        if spec.accuracy.is_some() {
+            let finest = Preset::finest_elements(&spec.scene.pin, &spec.scene.clamp);
+            for (axis, name) in ["nx", "ny", "nz"].into_iter().enumerate() {
+                if !gives(name) {
+                    spec.scene.pin.elements[axis] = finest[axis];
+                }
+            }
+        }
+        // A job without damping is solved in another way.
+        if let Some(preset) = preset.or(spec.accuracy.map(|_| Preset::Standard)) {
             preset.choose_way(&mut spec, gives);
         }
         time_defaults::fill(&mut spec, gives);

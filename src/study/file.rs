@@ -7,7 +7,9 @@ use super::json::present;
 use super::preset::Preset;
 use super::report_axes::ReportAxes;
 use super::samples::given::SamplesFile;
-use crate::spec::{Detection, HeightMap, MeshFile, Numerics, Roughness, RunControl, Scene, StabilityMethod};
+use crate::spec::{
+    Accuracy, Detection, HeightMap, MeshFile, Numerics, Roughness, RunControl, Scene, StabilityMethod,
+};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -46,6 +48,10 @@ pub(super) struct StudyFile {
     pub detection: Detection,
     /// How a job finds out whether its steady sliding is stable.
     pub stability: StabilityMethod,
+    /// How exact results are to be: each job goes from mesh to mesh until it is.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(with = "Accuracy")]
+    pub accuracy: Option<Accuracy>,
     /// Parameters to vary; the jobs are all combinations. Absent: a single job.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(schema_with = "grid_schema")]

@@ -165,6 +165,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("drift_tolerance", "/detection/drift_tolerance", Kind::Number, "largest drift of its mean between their halves"),
     parameter("regime_threshold", "/detection/regime_threshold", Kind::Number, "share above which a contact state names the regime"),
     parameter("decay_observation_s", "/detection/decay_observation_s", Kind::Number, "shortest steady sliding in which a decay is measured"),
+    parameter("accuracy_mu_star", "/accuracy/mu_star", Kind::Number, "largest error of μ* by the mesh, relative to μ*; the job goes from mesh to mesh until it is reached"),
     parameter("stability", "/stability", STABILITY, "whether eigenvalues or the run decide that sliding is stable"),
 ];
 
@@ -220,11 +221,13 @@ impl Parameter {
         self.pointer[1..].split('/').fold(String::new(), write)
     }
 
-    /// The part of a job that it belongs to: `scene`, `numerics`, `run`, `detection` or `stability`; none
+    /// The part of a job that it belongs to: `scene`, `numerics`, `run`, `detection`, `stability` or `accuracy`; none
     /// if it is not a field of a job.
     pub fn part(&self) -> Option<&'static str> {
         let part = self.pointer.split('/').nth(1)?;
-        Some(part).filter(|part| matches!(*part, "scene" | "numerics" | "run" | "detection" | "stability"))
+        Some(part).filter(|part| {
+            matches!(*part, "scene" | "numerics" | "run" | "detection" | "stability" | "accuracy")
+        })
     }
 
     /// Whether it changes how the physical case is solved and not the case: everything but the scene, and the mesh of it.
@@ -270,6 +273,8 @@ impl Parameter {
     pub(super) fn displaces(&self) -> impl Iterator<Item = &'static Self> {
         let names: &[&str] = match self.name {
             "preset" => Preset::COVERS,
+            // The study's mesh would be the finest one.
+            "accuracy_mu_star" => &["elements", "time_step_s"],
             "damping_ratio" => &["loss_factor", "damping_beta2", "damping_at_time_step_s", "beta_r_s"],
             "loss_factor" => &["damping_ratio", "damping_beta2", "damping_at_time_step_s", "beta_r_s"],
             "damping_frequency_hz" => &["damping_beta2", "damping_at_time_step_s", "beta_r_s"],

@@ -1,9 +1,7 @@
 //! Files of measured points, for comparison with studies: CSV with a column for each parameter and result.
 
 use crate::report::columns::ExportColumn;
-use crate::report::{
-    Discretisation, FREQUENCY, JobRow, MeasuredValue, Measurement, Parameters, RowState, SCALARS, Scalar,
-};
+use crate::report::{FREQUENCY, JobRow, MeasuredValue, Measurement, Parameters, RowState, SCALARS, Scalar};
 use crate::study::{PARAMETERS, Parameter, misspelt_name, read_text};
 use crate::units::name_and_unit;
 use csv::{ReaderBuilder, StringRecord, Trim};
@@ -316,7 +314,6 @@ fn row(
         state: RowState::Measured(Measurement { values, squeals }),
         wall_s: None,
         numerics: None,
-        discretisation: Discretisation::NotMeasured,
         wave: 0,
         why: None,
         inputs: Vec::new(),

@@ -17,7 +17,6 @@
 mod database;
 mod deep;
 mod difference;
-mod discretisation;
 mod error;
 mod export;
 mod forecast;
@@ -45,7 +44,6 @@ pub use database::{
 };
 pub use deep::{examine_deeply, unreadable_jobs};
 pub use difference::{Difference, InputDifference};
-pub use discretisation::discretisation_of;
 pub use error::SweepError;
 pub use export::{ExportColumns, Unreadable, columns, export, export_windows};
 pub use forecast::{Forecast, Group, Known, Speed, TimeRange, expected_s_per_cost};

@@ -6,7 +6,7 @@ use crate::study::SharedKeys;
 
 /// The numerics of a job, as reports compare them. `cases` makes the keys of physical cases.
 pub(super) fn numerics(spec: &JobSpec, cases: &mut SharedKeys) -> JobNumerics {
-    let JobSpec { scene, numerics, run, detection, stability: _, continuation: _ } = spec;
+    let JobSpec { scene, numerics, run, detection, stability: _, accuracy: _, continuation: _ } = spec;
     let elements = scene.pin.elements;
     JobNumerics {
         case: case_key(spec, cases),
@@ -36,6 +36,7 @@ fn case_key(spec: &JobSpec, cases: &mut SharedKeys) -> String {
         run: RunControl::default(),
         detection: Detection::default(),
         stability: StabilityMethod::default(),
+        accuracy: None,
         continuation: None,
     };
     case.scene.pin.elements = [1, 1, 1];

@@ -1,10 +1,9 @@
 //! From the queue's rows to the report's rows.
 
-use super::discretisation::MeasuredErrors;
 use super::error::SweepError;
 use crate::analysis::JobRecord;
 use crate::queue::{Integrity, JobState, Pages, Queue, Rows, StudyRow};
-use crate::report::{Discretisation, JobNumerics, JobRow, Parameters, RowState};
+use crate::report::{JobNumerics, JobRow, Parameters, RowState};
 use crate::spec::JobSpec;
 use crate::study::{Job, Parameter, input_parameters, inputs};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -64,19 +63,16 @@ async fn visit_pages<R: Sync, T: Send>(
     Ok(())
 }
 
-/// Reads all rows of a study, in the order of the grid, with what is known about the error of their discretisation.
+/// Reads all rows of a study, in the order of the grid.
 ///
 /// # Errors
 /// If the database has no such study or cannot be read.
 pub async fn read_rows(queue: &mut Queue, study: &str) -> Result<Vec<JobRow>, SweepError> {
-    let errors = MeasuredErrors::new();
     let mut rows = Vec::new();
     let read = |row: &StudyRow| {
-        // A specification of another version that this one cannot read has no known error.
-        let spec = spec_of_row(row).ok();
-        let has_one_mu = spec.as_ref().is_some_and(|spec| spec.scene.contact.law.has_one_mu());
-        let discretisation = spec.map_or(Discretisation::NotMeasured, |spec| errors.of(&spec));
-        Ok(JobRow { has_one_mu, discretisation, ..report_row(study, row)? })
+        // A specification of another version that this one cannot read has no known law.
+        let has_one_mu = spec_of_row(row).is_ok_and(|spec| spec.scene.contact.law.has_one_mu());
+        Ok(JobRow { has_one_mu, ..report_row(study, row)? })
     };
     let pages = queue.pages_with_payloads(study).await?;
     visit_pages(queue, pages, read, |row| {
@@ -199,7 +195,6 @@ pub(super) fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepErr
         has_one_mu: false,
         state,
         wall_s: row.wall_s,
-        discretisation: Discretisation::default(),
         inputs: Vec::new(),
     })
 }

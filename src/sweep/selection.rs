@@ -1,7 +1,6 @@
 //! One job of a study or of a database.
 
 use super::database::{open_to_read, study_file, with_open};
-use super::discretisation::discretisation_of;
 use super::error::SweepError;
 use super::rows::{StoredParameters, job_spec, row_state};
 use crate::queue::{JobDetails, Location, Queue, StudyDocument};
@@ -209,7 +208,6 @@ pub fn row_of_job(key: &str, spec: &JobSpec, state: RowState) -> JobRow {
         state,
         wall_s: None,
         numerics: None,
-        discretisation: discretisation_of(spec),
         wave: 0,
         why: None,
         inputs: Vec::new(),

@@ -7,8 +7,8 @@ use tribosweep_mechanics::analysis::{Outcome, Regime};
 use tribosweep_output::publish::table::Format;
 use tribosweep_output::report::{JobRow, RowState, export};
 
-const HEADER: &str = "study,job,omega_rpm,mu,status,regime,mu_star,mu_star_se,mu_star_contact,frequency_hz,\
-                      stick_share,slip_share,separated_share,n_over_f_min,n_over_f_max,sigma_n_max_pa,\
+const HEADER: &str = "study,job,omega_rpm,mu,status,regime,mu_star,mu_star_se,mu_star_mesh_error,\
+                      mu_star_contact,frequency_hz,frequency_mesh_error_hz,stick_share,slip_share,separated_share,n_over_f_min,n_over_f_max,sigma_n_max_pa,\
                       slip_speed_max_m_s,cycles,simulated_s,steps,time_step_s,energy_residual,\
                       identity_residual,wall_s,error";
 
@@ -39,7 +39,7 @@ fn each_figure_is_in_its_own_column() {
     let csv = String::from_utf8(csv).expect("the export is UTF-8");
     assert_eq!(
         csv.lines().nth(1).expect("one line"),
-        "reference,job-7-0.4,7,0.4,periodic,stick_slip,0.3512,0.0005,0.3512,14512.4,0.25,0.5,0.25,0.5,1.5,\
+        "reference,job-7-0.4,7,0.4,periodic,stick_slip,0.3512,0.0005,,0.3512,14512.4,,0.25,0.5,0.25,0.5,1.5,\
          1250000,0.125,40,0.0875,350000,2.5e-7,1.5e-9,0.0003,12.5,"
     );
 }

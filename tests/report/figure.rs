@@ -1,14 +1,13 @@
 //! The figures of curves, shares and residuals: every result has a marker, and every μ has a curve and an entry in the legend.
 
 use crate::charts::{all, coloured, data, lines, only, points, texts};
-use crate::synthetic::{done, measured, partial_study, periodic, record, report, row, with};
+use crate::synthetic::{after, done, measured, partial_study, periodic, record, report, row, with};
 use std::collections::HashSet;
-use std::sync::Arc;
 use tribosweep_mechanics::analysis::{Outcome, Regime};
 use tribosweep_output::publish::chart::palette::{BLUE, GREEN, GREY, VERMILLION};
 use tribosweep_output::publish::chart::{Axis, Chart, Guide, Layer, Panel, Rgb, Sample, Shape};
 use tribosweep_output::report::figure::{Plot, figures};
-use tribosweep_output::report::{Discretisation, JobRow, MeshError, RowState, Scalar, View, write};
+use tribosweep_output::report::{JobRow, RowState, Scalar, View, write};
 
 /// The first colours of the palette, in the order of ascending μ.
 const COLOURS: [Rgb; 3] = [BLUE, VERMILLION, GREEN];
@@ -312,28 +311,26 @@ fn a_study_without_results_says_so() {
     }
 }
 
-/// Protects: a curve has a band as wide as the error of mesh and step, a single point has one too, an indicative error has a
-/// paler one, and there is none where the error is not measured.
+/// Protects: a curve has a band as wide as the error of the mesh, a single point has one too, and there is none where the error is unknown.
 #[test]
 fn the_error_of_the_mesh_is_a_band() {
-    let error = MeshError { mu_star_relative: 0.25, ..MeshError::default() };
-    let bands = |discretisation: Discretisation| {
+    let error = after(row(2.0, 0.2, periodic(0.5)), 0.4, 14_500.0).mesh_error().unwrap().mu_star;
+    assert!(error > 0.05, "{error}");
+    let bands = |is_known: bool| {
         let rows = [(2.0, 0.2), (7.0, 0.2), (7.0, 0.4)].map(|(omega, mu)| {
-            let mut row = row(omega, mu, periodic(0.5));
-            row.discretisation = discretisation.clone();
-            row
+            let row = row(omega, mu, periodic(0.5));
+            if is_known { after(row, 0.4, 14_500.0) } else { row }
         });
         let chart = only(&rows, Plot::MuStar);
         let of = |colour| areas(&chart.panels[0], colour);
-        (of(COLOURS[0]), of(COLOURS[1]), texts(&chart.legend).contains(&"error of mesh and step"))
+        (of(COLOURS[0]), of(COLOURS[1]), texts(&chart.legend).contains(&"error of the mesh"))
     };
-    let (curve, point, legend) = bands(Discretisation::Measured(Arc::new(error.clone())));
+    let (curve, point, legend) = bands(true);
     assert_eq!((curve.len(), point.len(), legend), (1, 1, true));
-    assert_eq!(curve[0].0, [(2.0, 0.375), (7.0, 0.375), (7.0, 0.625), (2.0, 0.625)]);
-    assert_eq!(point[0].0.iter().map(|corner| corner.1).collect::<Vec<_>>(), [0.375, 0.375, 0.625, 0.625]);
-    let (pale, _, _) = bands(Discretisation::Indicative(Arc::new(error)));
-    assert!(pale[0].1 < curve[0].1);
-    let (curve, point, legend) = bands(Discretisation::NotMeasured);
+    let [low, high] = [0.5 - error, 0.5 + error];
+    assert_eq!(curve[0].0, [(2.0, low), (7.0, low), (7.0, high), (2.0, high)]);
+    assert_eq!(point[0].0.iter().map(|corner| corner.1).collect::<Vec<_>>(), [low, low, high, high]);
+    let (curve, point, legend) = bands(false);
     assert_eq!((curve.len(), point.len(), legend), (0, 0, false));
 }
 

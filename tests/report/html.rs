@@ -1,13 +1,10 @@
 //! The page for a browser: its contents, what it leaves out, and that texts of a study are never markup.
 
 use crate::charts::drawings;
-use crate::synthetic::{failed, partial_study, periodic, report, row, with};
+use crate::synthetic::{after, failed, partial_study, periodic, report, row, with};
 use std::fs;
-use std::sync::Arc;
-use tribosweep_mechanics::analysis::Build;
-use tribosweep_output::report::{
-    Discretisation, JobRow, MeshError, Provenance, Report, ResultGroup, RowState, inspections, write,
-};
+use tribosweep_mechanics::analysis::{Build, Regime};
+use tribosweep_output::report::{JobRow, Provenance, Report, ResultGroup, RowState, inspections, write};
 
 fn page_of(report: &Report) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -257,67 +254,53 @@ fn what_was_simulated_is_on_the_page() {
     assert!(fs::read_to_string(folder.path().join("track.svg")).unwrap().starts_with("<svg"));
 }
 
-fn with_error(mut row: JobRow, discretisation: Discretisation) -> JobRow {
-    row.discretisation = discretisation;
-    row
-}
-
-/// An error of 5 % of μ* and 0.25 % of the frequency.
-fn coarse() -> Arc<MeshError> {
-    Arc::new(MeshError {
-        mu_star_relative: 0.05,
-        frequency_relative: 0.0025,
-        preset: "draft".to_owned(),
-        measured_at: "on a scene".to_owned(),
-    })
-}
-
-/// Protects: the first sentence has an error only where mesh and step are known, because the spread over the cycles alone would claim
+/// Protects: the first sentence has an error only where that of the mesh is known, because the spread over the cycles alone would claim
 /// more than is known.
 #[test]
 fn the_first_sentence_claims_no_error_that_is_not_known() {
-    let sentence = |discretisation| {
-        let text = text(&page(&[with_error(row(7.0, 0.4, periodic(0.263_429)), discretisation)]));
+    let job = || row(7.0, 0.4, periodic(0.263_429));
+    let sentence = |job: JobRow| {
+        let text = text(&page(&[job]));
         text.split("μ* falls furthest below μ").nth(1).unwrap().split(" % of μ.").next().unwrap().to_owned()
     };
-    let known = sentence(Discretisation::Measured(coarse()));
+    let known = sentence(after(job(), 0.25, 14_500.0));
     assert!(known.contains("0.263 ±"), "{known}");
-    let unknown = sentence(Discretisation::NotMeasured);
+    let unknown = sentence(job());
     assert!(unknown.contains("to 0.263") && !unknown.contains('±'), "{unknown}");
 }
 
-/// Protects: the error of mesh and step is in the head, and tables do not promise digits that it does not leave. The CSV
-/// keeps them.
+/// Protects: the largest error of the mesh is in the head, and tables do not promise digits that it does not leave. The CSV keeps them.
 #[test]
 fn digits_follow_the_error() {
     let job = |omega| row(omega, 0.4, periodic(0.263_429));
     let cases = [
-        // 5 % are 0.013, and 0.25 % of 14512 Hz are 36 Hz.
         (
-            Discretisation::Measured(coarse()),
-            "0.263",
+            Some((0.163, 14_500.0)),
+            "0.3",
             "14510",
-            "of μ*, measured on this scene",
-            "up to 5 % of μ* and 0.25 %",
+            "of μ*, at ",
+            "Mesh: the error of μ* is at most 0.",
         ),
         (
-            Discretisation::Indicative(coarse()),
+            None,
             "0.263",
             "14510",
-            "of μ*, indicative",
-            "This is indicative only",
+            "unknown",
+            "the error of 2 of 2 jobs is unknown: no run on a coarser mesh (2 jobs)",
         ),
-        (Discretisation::NotMeasured, "0.263", "14510", "not measured", "the error is not measured"),
         (
-            Discretisation::Measured(Arc::default()),
+            Some((0.263_429, 14_512.4)),
             "0.2634",
-            "14512",
-            "measured on this scene",
-            "up to 0 % of μ*",
+            "14510",
+            "of μ*, at ",
+            "Mesh: the error of μ* is at most 0.0",
         ),
     ];
-    for (error, mu_star, frequency, tile, sentence) in cases {
-        let rows = [7.0, 9.0].map(|omega| with_error(job(omega), error.clone()));
+    for (coarser, mu_star, frequency, tile, sentence) in cases {
+        let rows = [7.0, 9.0].map(|omega| match coarser {
+            Some((mu_star, hz)) => after(job(omega), mu_star, hz),
+            None => job(omega),
+        });
         let page = page(&rows);
         for part in [format!("<td>{mu_star}</td>"), format!("<td>{frequency}</td>")] {
             assert_eq!(page.matches(&part).count(), 2, "{part}");
@@ -334,25 +317,18 @@ fn digits_follow_the_error() {
     }
 }
 
-/// Protects: a study whose jobs have different errors says how many have which.
+/// Protects: a study says in how many jobs the error of the mesh is unknown, and why.
 #[test]
-fn several_errors_are_counted() {
-    let errors = [
-        Discretisation::Measured(coarse()),
-        Discretisation::Indicative(coarse()),
-        Discretisation::NotMeasured,
-    ];
-    let rows: Vec<JobRow> = (2_u8..)
-        .zip(errors)
-        .map(|(omega, error)| with_error(row(omega.into(), 0.4, periodic(0.3)), error))
-        .collect();
-    let text = text(&page(&rows));
+fn unknown_errors_are_counted() {
+    let job = |omega| row(omega, 0.4, periodic(0.3));
+    let mut other = after(job(3.0), 0.3, 14_500.0);
+    if let RowState::Done(record) = &mut other.state {
+        record.regime = Regime::SlipSeparation;
+    }
+    let text = text(&page(&[after(job(2.0), 0.29, 14_500.0), other, job(4.0)]));
     for part in [
-        "Mesh and time step of 2 of 3 jobs: up to 5 % of μ*",
-        "For 1 job it is indicative only",
-        "Mesh and time step of 1 of 3 jobs: the error is not measured",
-        "≤ 5 %",
-        "in some jobs not measured",
+        "the error of 2 of 3 jobs is unknown: another regime on the coarser mesh (1 job); no run on a coarser mesh (1 job)",
+        "unknown in 2 of 3 jobs",
     ] {
         assert!(text.contains(part), "{part} in {text}");
     }

@@ -1,12 +1,10 @@
 //! Synthetic jobs: plausible results without a simulation.
 
 use serde_json::Value;
-use std::sync::{Arc, LazyLock};
-use tribosweep_mechanics::analysis::{JobRecord, Outcome, Regime};
+use std::sync::LazyLock;
+use tribosweep_mechanics::analysis::{CoarseStart, JobRecord, Outcome, Regime};
 use tribosweep_output::publish::{Drawing, Sheet, SheetGroup, SheetLine};
-use tribosweep_output::report::{
-    Discretisation, JobRow, MeasuredValue, Measurement, MeshError, Parameters, Report, RowState, View,
-};
+use tribosweep_output::report::{JobRow, MeasuredValue, Measurement, Parameters, Report, RowState, View};
 
 /// The usual axes.
 pub static VIEW: LazyLock<View> = LazyLock::new(View::default);
@@ -39,7 +37,6 @@ pub fn measured(omega_rpm: f64, mu: f64, mu_star: f64, error: Option<f64>) -> Jo
         study: "rig".to_owned(),
         job: format!("rig.csv:{omega_rpm}"),
         parameters: Parameters::new(omega_rpm, mu, Vec::new()),
-        discretisation: Discretisation::NotMeasured,
         ..row(omega_rpm, mu, RowState::Measured(Measurement { values: vec![value], squeals: None }))
     }
 }
@@ -90,12 +87,29 @@ pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> JobRow {
         state,
         wall_s: Some(12.5),
         numerics: None,
-        // An error that leaves all digits.
-        discretisation: Discretisation::Measured(Arc::new(MeshError::default())),
         wave: 0,
         why: None,
         inputs: Vec::new(),
     }
+}
+
+/// The row with a run on a mesh of half as many elements in each direction, which ended in the same regime with this μ\* and this frequency.
+pub fn after(mut row: JobRow, coarser_mu_star: f64, coarser_hz: f64) -> JobRow {
+    if let RowState::Done(record) = &mut row.state {
+        record.elements = Some([12, 16, 10]);
+        record.start = Some(CoarseStart {
+            elements: [6, 8, 5],
+            outcome: Some(record.outcome),
+            only_compared: false,
+            regime: Some(record.regime),
+            same_clamp: Some(true),
+            simulated_s: 0.002,
+            mu_star: Some(coarser_mu_star),
+            frequency_hz: Some(coarser_hz),
+            start: None,
+        });
+    }
+    row
 }
 
 pub fn with(mut row: JobRow, name: &str, value: impl Into<Value>) -> JobRow {

@@ -2,26 +2,25 @@
 
 #![allow(clippy::needless_raw_string_hashes, reason = "the macro writes them")]
 
-use crate::synthetic::{partial_study, periodic, report, row};
+use crate::synthetic::{after, partial_study, periodic, report, row};
 use expect_test::{expect, expect_file};
 use std::fs;
-use std::sync::Arc;
 use tribosweep_output::report::overview::overview;
 use tribosweep_output::report::sensitivity::{markdown, sensitivities};
-use tribosweep_output::report::{Discretisation, JobRow, MeshError, Scalar, write};
+use tribosweep_output::report::{JobRow, Scalar, write};
 
 /// Protects: the words of a report, in their order, for a study in progress that has every kind of job.
 #[test]
 fn a_report_reads_well() {
     let folder = tempfile::tempdir().unwrap();
-    let error = Arc::new(MeshError {
-        mu_star_relative: 0.066,
-        frequency_relative: 0.01,
-        preset: "draft".to_owned(),
-        measured_at: "on the reference scene".to_owned(),
-    });
-    let of_draft = |row| JobRow { discretisation: Discretisation::Measured(Arc::clone(&error)), ..row };
-    let rows: Vec<JobRow> = partial_study().into_iter().map(of_draft).collect();
+    let after_coarser = |row: JobRow| match row.record() {
+        Some(record) => {
+            let coarser_mu_star = 0.98 * record.mu_star;
+            after(row, coarser_mu_star, 14_500.0)
+        }
+        None => row,
+    };
+    let rows: Vec<JobRow> = partial_study().into_iter().map(after_coarser).collect();
     write(&report(&rows), folder.path()).unwrap();
     let page = fs::read_to_string(folder.path().join("report.md")).unwrap();
     expect_file!["partial_study.md"].assert_eq(&page);

@@ -4,7 +4,7 @@
 use super::{assert_contains, parse, refusal};
 use serde_json::{Value, json};
 use tribosweep::analysis::{Unobserved, solve};
-use tribosweep::spec::{ClampSide, DiskKind, JobSpec, Precision, StabilityMethod, Start};
+use tribosweep::spec::{ClampSide, JobSpec, Precision, StabilityMethod, Start};
 use tribosweep::study::{CaseEvidence, Evidence, Parameter, Preset, Study, job_key};
 
 fn base(preset: &str, more: &str) -> JobSpec {
@@ -263,43 +263,6 @@ fn the_schema_knows_the_presets() {
     }
     assert!(problem(&json!({ "preset": "exact" })).is_some());
     assert!(problem(&json!({ "preset": null })).is_some());
-}
-
-/// Protects: a measured error is claimed for jobs that are as fine as the preset, as measured only on the scene, at the
-/// friction and between the speeds of the measurement, and never on an elastic disk or for a given time step.
-#[test]
-fn the_measured_error_belongs_to_jobs_that_are_as_fine() {
-    let evidence = Evidence::measured();
-    let error = |change: &dyn Fn(&mut JobSpec)| {
-        let mut spec = base("standard", "");
-        spec.numerics.beta_r_s = evidence.beta_r_s;
-        change(&mut spec);
-        evidence.error_of(&spec).map(|found| (found.preset.name.as_str(), found.on_this_scene))
-    };
-    assert_eq!(error(&|_| ()), Some(("standard", true)));
-    assert_eq!(error(&|spec| spec.numerics.beta_r_s *= 0.5), Some(("standard", false)));
-    for preset in Preset::ALL {
-        let found = evidence.error_of(&base(preset.name(), "")).unwrap();
-        assert_eq!(found.preset.name, preset.name());
-    }
-    assert_eq!(error(&|spec| spec.scene.pin.elements = [24, 40, 30]), Some(("standard", true)));
-    assert_eq!(error(&|spec| spec.scene.pin.elements = [24, 29, 20]), Some(("draft", true)));
-    assert_eq!(error(&|spec| spec.numerics.safety_factor = 0.8), Some(("draft", true)));
-    assert_eq!(error(&|spec| spec.detection.drift_tolerance = 0.002), Some(("draft", true)));
-    assert_eq!(error(&|spec| spec.scene.pin.elements = [6, 8, 5]), None);
-    assert_eq!(error(&|spec| spec.numerics.time_step_s = Some(1e-7)), None);
-    assert_eq!(error(&|spec| spec.scene.disk.kind = DiskKind::Elastic), None);
-    let others: [&dyn Fn(&mut JobSpec); 6] = [
-        &|spec| spec.scene.contact.mu = 0.3,
-        &|spec| spec.scene.disk.omega_rpm = 1.0,
-        &|spec| spec.scene.disk.omega_rpm = 36.0,
-        &|spec| spec.scene.load.force_n = 31.0,
-        &|spec| spec.scene.pin.young_modulus_pa = 2.0e9,
-        &|spec| spec.numerics.beta_r_s = 0.0,
-    ];
-    for other in others {
-        assert_eq!(error(other), Some(("standard", false)));
-    }
 }
 
 /// Protects: an input is said to come from where it was given.

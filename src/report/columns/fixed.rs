@@ -6,8 +6,8 @@ use super::{ExportColumn, Group, detail, quantity};
 use crate::analysis::program::Hysteresis;
 use crate::analysis::sample::OBSERVED_NAMES;
 use crate::analysis::{
-    CoarseStart, ComplexMode, ElasticDisk, HolderMotion, JobRecord, ObservedNode, Obstacle, Outcome,
-    SlidingStability,
+    CoarseStart, ComplexMode, ElasticDisk, HolderMotion, JobRecord, ObservedNode, Obstacle, Outcome, Regime,
+    SlidingStability, UnknownError,
 };
 use crate::publish::value::number;
 use crate::report::row::{JobRow, RowState};
@@ -28,10 +28,12 @@ pub static PLAIN: &[ExportColumn] = &[
     detail("mu", Job, "local (Coulomb) friction coefficient μ", |row| row.parameters.mu().into()),
     detail("status", Job, "how far the job is, or how its run ended: pending, running, cancelled, failed, unreadable (its result is damaged or of another version), periodic, decayed, not_periodic, completed, unstable", |row| row.status().into()),
     detail("regime", Result, "contact regime: stable, stick_slip, stick_slip_separation, slip_separation, undecided", |row| of(row, |record| record.regime.name())),
-    quantity("mu_star", Result, titled("macroscopic friction coefficient μ*").symbol("μ*").digits(MU_STAR).mesh_error(|of| of.mu_star_relative), "macroscopic friction coefficient μ* = ⟨T⟩/⟨F⟩ with the tangential force T at the clamp", |row| of(row, |record| record.mu_star)),
+    quantity("mu_star", Result, titled("macroscopic friction coefficient μ*").symbol("μ*").digits(MU_STAR), "macroscopic friction coefficient μ* = ⟨T⟩/⟨F⟩ with the tangential force T at the clamp", |row| of(row, |record| record.mu_star)),
     quantity("mu_star_se", Result, BY_MEANING.error_of("mu_star"), "standard error of mu_star over the cycles (of a stable job, over equal parts of the window) with what it still drifts", |row| of(row, |record| record.mu_star_se)),
+    quantity("mu_star_mesh_error", Result, titled("error of μ* by the mesh").mesh_error_of("mu_star"), "bound of the absolute error that the mesh makes in mu_star, from the run on a coarser mesh; it holds for 95 % of jobs, and is absent where the error is unknown", |row| row.mesh_error().map(|error| error.mu_star).into()),
     quantity("mu_star_contact", Result, titled("μ* from the contact forces"), "the same ratio from the contact forces; with a holder that moves it is mu_star", |row| of(row, |record| record.mu_star_contact)),
-    quantity("frequency_hz", Result, titled("frequency").digits(FREQUENCY).mesh_error(|of| of.frequency_relative), "fundamental frequency of the total normal contact force N; of a run that is not periodic, the mean rate of its cycles", |row| of(row, |record| record.frequency_hz)),
+    quantity("frequency_hz", Result, titled("frequency").digits(FREQUENCY), "fundamental frequency of the total normal contact force N; of a run that is not periodic, the mean rate of its cycles", |row| of(row, |record| record.frequency_hz)),
+    quantity("frequency_mesh_error_hz", Result, titled("error of the frequency by the mesh").mesh_error_of("frequency_hz"), "bound of the absolute error that the mesh makes in frequency_hz, likewise", |row| row.mesh_error().and_then(|error| error.frequency_hz).into()),
     quantity("stick_share", Contact, titled("share of stick"), "share of the node-time in stick", |row| of(row, |record| record.stick_share)),
     quantity("slip_share", Contact, titled("share of slip"), "share of the node-time in slip", |row| of(row, |record| record.slip_share)),
     quantity("separated_share", Contact, titled("share of separation"), "share of the node-time separated", |row| of(row, |record| record.separated_share)),
@@ -53,6 +55,8 @@ pub static PLAIN: &[ExportColumn] = &[
 #[rustfmt::skip]
 pub static FURTHER: &[ExportColumn] = &[
     quantity("growth_rate_per_s", Result, titled("growth rate").signed(), "growth rate of the fastest growing strong line, if the run ended in steady sliding, and of the leading mode without a run; negative: sliding is stable", |row| of(row, |record| record.growth_rate_per_s)),
+    quantity("mu_star_extrapolated", Result, titled("μ* extrapolated to fine meshes"), "mu_star extrapolated to fine meshes from both meshes; absent where that is not better than mu_star", |row| row.mesh_error().and_then(|error| error.mu_star_extrapolated).into()),
+    detail("mesh_error_unknown", Result, "why the error of the mesh is unknown", |row| of(row, |record| record.mesh_error().err().map(UnknownError::reason))),
     detail("obstacle", Result, "why the run is not periodic", |row| of(row, |record| record.obstacle.as_ref().map(in_words))),
     detail("obstacle_figure", Result, "the figure that is not the same from cycle to cycle", |row| unsteady(row, |figure, _, _| figure.into())),
     detail("obstacle_spread", Result, "its largest minus its smallest value over the cycles; of period, stress and amplitude, over the mean", |row| unsteady(row, |_, spread, _| spread.into())),
@@ -77,12 +81,17 @@ pub static FURTHER: &[ExportColumn] = &[
     quantity("window_start_s", Run, BY_MEANING, "simulated time at which the window of all averages begins; it ends with the run", |row| of(row, |record| record.window_start_s)),
     quantity("crossings_per_cycle", Run, titled("section crossings per limit cycle"), "crossings of N = F in one limit cycle", |row| of(row, |record| record.crossings_per_cycle)),
     quantity("time_step_limit_s", Run, BY_MEANING, "stability limit of the time step", |row| of(row, |record| record.time_step_limit_s)),
+    detail("accuracy_reached", Result, "whether mu_star_mesh_error is as small as the job asks for, where it asks for an accuracy", |row| of(row, |record| record.accuracy_reached)),
+    quantity("mesh_elements_x", Run, BY_MEANING, "elements in x of the mesh that the result is from", |row| elements(row, 0)),
+    quantity("mesh_elements_y", Run, BY_MEANING, "elements in y of that mesh", |row| elements(row, 1)),
+    quantity("mesh_elements_z", Run, BY_MEANING, "elements in z of that mesh", |row| elements(row, 2)),
     quantity("clamp_width_on_mesh_m", Run, BY_MEANING, "width of the clamp's strip on the mesh, which may differ from the given one", |row| of(row, |record| record.clamp_width_m)),
     detail("start_outcome", Run, "how the run on a coarser mesh ended, from which the run was to start: periodic, and otherwise it started from rest", |row| start(row, coarse_outcome)),
     quantity("start_elements_x", Run, BY_MEANING, "elements of the coarser mesh in x", |row| start(row, |start| start.elements[0])),
     quantity("start_elements_y", Run, BY_MEANING, "elements of the coarser mesh in y", |row| start(row, |start| start.elements[1])),
     quantity("start_elements_z", Run, BY_MEANING, "elements of the coarser mesh in z", |row| start(row, |start| start.elements[2])),
     quantity("start_simulated_s", Run, BY_MEANING, "simulated time on the coarser mesh, which simulated_s does not contain", |row| start(row, |start| start.simulated_s)),
+    detail("start_regime", Run, "contact regime on the coarser mesh", |row| start(row, |start| start.regime.map(Regime::name))),
     quantity("start_mu_star", Run, BY_MEANING, "μ* on the coarser mesh", |row| start(row, |start| start.mu_star)),
     quantity("start_frequency_hz", Run, BY_MEANING, "fundamental frequency on the coarser mesh", |row| start(row, |start| start.frequency_hz)),
     quantity("energy_kinetic_j", Energies, titled("kinetic energy at the end"), "kinetic energy at the end of the run, ½ v·M·v of the velocities half a step before and after: it may be slightly negative where the velocity changes its sign", |row| of(row, |record| record.energy.kinetic_j)),
@@ -159,6 +168,10 @@ fn sliding<T: Into<Value>>(row: &JobRow, read: impl FnOnce(&SlidingStability) ->
 
 fn mode(row: &JobRow, read: impl FnOnce(&ComplexMode) -> f64) -> Value {
     of(row, |record| record.stability.as_ref().and_then(|sliding| sliding.modes.first()).map(read))
+}
+
+fn elements(row: &JobRow, axis: usize) -> Value {
+    of(row, |record| record.elements.map(|elements| elements[axis]))
 }
 
 fn start<T: Into<Value>>(row: &JobRow, read: impl FnOnce(&CoarseStart) -> T) -> Value {

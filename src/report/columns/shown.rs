@@ -1,7 +1,5 @@
 //! How figures and tables show a number of a run.
 
-use crate::report::discretisation::MeshError;
-
 /// How figures and tables show a number of a run.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::report) struct Shown {
@@ -12,10 +10,10 @@ pub(in crate::report) struct Shown {
     pub digits: Digits,
     /// Whether it may have both signs, and a change of the sign matters more than sizes.
     pub is_signed: bool,
-    /// Its error by mesh, time step and detection, relative to its value, if there are measurements of it.
-    pub mesh_error: Option<fn(&MeshError) -> f64>,
     /// The column whose statistical error it is; empty if it is none.
     pub error_of: &'static str,
+    /// The column whose error by the mesh it is; empty if it is none.
+    pub mesh_error_of: &'static str,
 }
 
 /// The digits of a number for a reader.
@@ -23,7 +21,7 @@ pub(in crate::report) struct Shown {
 pub(in crate::report) struct Digits {
     /// The last digit that is shown at all.
     pub last: Last,
-    /// The last digit where the error of mesh and time step is not measured: the statistical error alone would promise too many.
+    /// The last digit where the error of the mesh is not known: the statistical error alone would promise too many.
     pub unmeasured: Last,
     /// The power of ten of a digit that is shown whatever the error is.
     pub coarsest: i32,
@@ -59,7 +57,7 @@ pub(super) const BY_MEANING: Shown = titled("");
 
 /// A number of that title, with four digits.
 pub(super) const fn titled(title: &'static str) -> Shown {
-    Shown { title, symbol: "", digits: Digits::FOUR, is_signed: false, mesh_error: None, error_of: "" }
+    Shown { title, symbol: "", digits: Digits::FOUR, is_signed: false, error_of: "", mesh_error_of: "" }
 }
 
 impl Shown {
@@ -75,11 +73,11 @@ impl Shown {
         Self { is_signed: true, ..self }
     }
 
-    pub(super) const fn mesh_error(self, of: fn(&MeshError) -> f64) -> Self {
-        Self { mesh_error: Some(of), ..self }
-    }
-
     pub(super) const fn error_of(self, error_of: &'static str) -> Self {
         Self { error_of, ..self }
+    }
+
+    pub(super) const fn mesh_error_of(self, mesh_error_of: &'static str) -> Self {
+        Self { mesh_error_of, ..self }
     }
 }

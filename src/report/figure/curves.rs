@@ -8,7 +8,6 @@ use crate::publish::chart::{
     At, Axis, Chart, Entry, Guide, Layer, Marker, Panel, Pen, Point, Rgb, Scale, Shape,
 };
 use crate::publish::value;
-use crate::report::discretisation::Discretisation;
 use crate::report::layout::{Group, Layout};
 use crate::report::parameters::{MU, SOURCE};
 use crate::report::row::JobRow;
@@ -27,8 +26,8 @@ const CURVE: f64 = 2.0;
 const DASHES: [(f64, f64); 4] = [(0.0, 0.0), (14.0, 5.0), (3.0, 4.0), (22.0, 8.0)];
 /// Marks of the files of measured points.
 const MARKS: [Shape; 3] = [Shape::Cross, Shape::Plus, Shape::Star];
-/// How much the band of an error covers of what is behind it: one that was measured on the jobs' own scene, and an indicative one.
-const COVERS: [f64; 2] = [0.22, 0.11];
+/// How much the band of an error covers of what is behind it.
+const COVER: f64 = 0.22;
 /// Half the width of the band of a single point, relative to the plot.
 const HALF_BAND: f64 = 0.008;
 
@@ -111,10 +110,9 @@ fn note(scalar: &Scalar) -> &'static str {
     }
 }
 
-/// The error of mesh and time step relative to the value, and whether it was measured on the job's own scene.
-fn mesh_error(scalar: &Scalar, row: &JobRow) -> Option<(f64, bool)> {
-    let relative = scalar.mesh_error(row).filter(|_| scalar.is_settled(row))?;
-    (relative > 0.0).then_some((relative, matches!(row.discretisation, Discretisation::Measured(_))))
+/// The error of the value by the mesh, where it is known.
+fn mesh_error(scalar: &Scalar, row: &JobRow) -> Option<f64> {
+    scalar.mesh_error(row).filter(|error| *error > 0.0 && scalar.is_settled(row))
 }
 
 /// The marker of a job in a regime.
@@ -140,6 +138,10 @@ impl Frame<'_> {
 
     fn error(&self, place: &Place) -> f64 {
         self.scalar.error(place.row).unwrap_or(0.0) / self.per_unit
+    }
+
+    fn mesh_error(&self, place: &Place) -> Option<f64> {
+        Some(mesh_error(self.scalar, place.row)? / self.per_unit)
     }
 
     fn source(&self, source: usize) -> Source {
@@ -181,8 +183,7 @@ impl Frame<'_> {
     fn y_axis(&self, counted: &[Place], guides: impl Iterator<Item = f64>) -> Axis {
         let with_errors = |place: &Place| {
             let y = self.value(place)?;
-            let of_mesh = mesh_error(self.scalar, place.row).map_or(0.0, |(relative, _)| relative * y.abs());
-            let error = self.error(place).max(of_mesh);
+            let error = self.error(place).max(self.mesh_error(place).unwrap_or(0.0));
             Some([y - error, y + error])
         };
         let mut ends: Vec<f64> = counted.iter().filter_map(with_errors).flatten().collect();
@@ -250,40 +251,30 @@ impl Frame<'_> {
         own.chunk_by(|a, b| a.x == b.x).map(mean).collect()
     }
 
-    /// The bands that the error of mesh and time step makes along a curve and beside single points.
+    /// The bands that the error of the mesh makes along a curve and beside single points.
     fn bands(&self, own: &[Place], curve: &[At], is_joined: bool, colour: Rgb) -> Vec<Layer> {
         let edge = |(here, (x, y)): (&[Place], &At)| {
-            let (error, is_measured) = here.iter().find_map(|place| mesh_error(self.scalar, place.row))?;
-            y.is_finite().then(|| ([(*x, y - error * y.abs()), (*x, y + error * y.abs())], is_measured))
+            let error = here.iter().filter_map(|place| self.mesh_error(place)).reduce(f64::max)?;
+            y.is_finite().then_some([(*x, y - error), (*x, y + error)])
         };
         let here = own.chunk_by(|a, b| a.x == b.x);
-        let edges: Vec<Option<([At; 2], bool)>> = here.zip(curve).map(edge).collect();
-        let area = |corners: Vec<At>, is_measured: bool| {
-            Layer::Area(corners, colour, COVERS[usize::from(!is_measured)])
-        };
-        let alone = |([low, high], is_measured): &([At; 2], bool)| {
+        let edges: Vec<Option<[At; 2]>> = here.zip(curve).map(edge).collect();
+        let alone = |[low, high]: &[At; 2]| {
             let at = self.x.axis.place(low.0);
             let [left, right] = [-HALF_BAND, HALF_BAND].map(|half| self.x.axis.value_at(at + half));
-            area(vec![(left, low.1), (right, low.1), (right, high.1), (left, high.1)], *is_measured)
+            vec![(left, low.1), (right, low.1), (right, high.1), (left, high.1)]
         };
         let mut bands = Vec::new();
         for run in edges.split(Option::is_none) {
-            let run: Vec<&([At; 2], bool)> = run.iter().flatten().collect();
+            let run: Vec<&[At; 2]> = run.iter().flatten().collect();
             if !is_joined || run.len() == 1 {
                 bands.extend(run.into_iter().map(alone));
-                continue;
-            }
-            // A part between two points is as certain as the less certain one.
-            let certain = |at: usize| run[at].1 && run[at + 1].1;
-            let parts: Vec<usize> = (1..run.len()).map(|end| end - 1).collect();
-            for equal in parts.chunk_by(|a, b| certain(*a) == certain(*b)) {
-                let part = &run[equal[0]..=equal[equal.len() - 1] + 1];
-                let below = part.iter().map(|([low, _], _)| *low);
-                let above = part.iter().rev().map(|([_, high], _)| *high);
-                bands.push(area(below.chain(above).collect(), certain(equal[0])));
+            } else if !run.is_empty() {
+                let above = run.iter().rev().map(|own| own[1]);
+                bands.push(run.iter().map(|own| own[0]).chain(above).collect());
             }
         }
-        bands
+        bands.into_iter().map(|corners| Layer::Area(corners, colour, COVER)).collect()
     }
 
     fn point(&self, place: &Place) -> Option<Point> {
@@ -332,8 +323,8 @@ impl Frame<'_> {
             entries.push(Entry::line(Guide::level(0.0, INK).pen, "μ* = μ"));
         }
         if with_value.iter().any(|place| mesh_error(self.scalar, place.row).is_some()) {
-            let band = Pen { cover: 2.0 * COVERS[0], ..Pen::solid(GREY, 12.0) };
-            entries.push(Entry::line(band, "error of mesh and step"));
+            let band = Pen { cover: 2.0 * COVER, ..Pen::solid(GREY, 12.0) };
+            entries.push(Entry::line(band, "error of the mesh"));
         }
         if layout.has_sources() {
             entries.push(Entry::heading("source"));

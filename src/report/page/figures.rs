@@ -5,7 +5,6 @@ use super::{Parts, head, tables};
 use crate::analysis::{Outcome, Regime};
 use crate::publish::chart::MAX_TIPS;
 use crate::publish::page::{Block, Figure as Shown, Section, Span, Text};
-use crate::report::Discretisation;
 use crate::report::explore;
 use crate::report::export;
 use crate::report::figure::{DataFile, Figure, Plot, RESIDUALS};
@@ -18,14 +17,8 @@ use crate::report::tables::Quantity;
 const MAX_MARGINAL: usize = 8;
 
 pub(super) fn friction(parts: &Parts) -> Section {
-    let errors =
-        || parts.report.rows.iter().filter(|row| row.record().is_some()).map(|row| &row.discretisation);
-    let is_indicative = |error: &Discretisation| matches!(error, Discretisation::Indicative(_));
-    let bands = match (errors().any(|error| error.error().is_some()), errors().any(is_indicative)) {
-        (false, _) => "",
-        (true, false) => " Bands: the measured error of mesh and time step.",
-        (true, true) => " Bands: the error of mesh and time step, paler where it is indicative only.",
-    };
+    let is_known = parts.report.rows.iter().any(|row| row.mesh_error().is_some());
+    let bands = if is_known { " Bands: the error of the mesh, where it is known." } else { "" };
     let caption = format!(
         "Macroscopic friction coefficient μ* {}. Error bars: standard error over the cycles, where it is larger than a \
          marker{}.{bands}",

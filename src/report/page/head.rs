@@ -6,13 +6,13 @@ use crate::analysis::{JobRecord, Outcome};
 use crate::publish::page::{Block, Span, Text, Tile};
 use crate::publish::value;
 use crate::report::accuracy;
+use crate::report::digits;
 use crate::report::input::Report;
 use crate::report::layout::parameters_in_words;
 use crate::report::row::JobRow;
 use crate::report::scalar::{FREQUENCY, MU_STAR};
 use crate::report::summary::{self, Summary};
 use crate::report::tooltip::residual_text;
-use crate::report::{Discretisation, digits};
 
 /// What comes before the links to sections.
 pub(super) fn lead(parts: &Parts) -> Vec<Block> {
@@ -67,11 +67,7 @@ fn friction(rows: &[&JobRow]) -> Option<String> {
     if record.mu_star / row.parameters.mu() > LITTLE {
         return Some("μ* is μ within half a per cent in all jobs.".to_owned());
     }
-    // The error over the cycles alone would claim more than is known.
-    let mu_star = match row.discretisation.error() {
-        Some(_) => digits::with_error(MU_STAR, row),
-        None => digits::by_error(MU_STAR, row),
-    };
+    let mu_star = digits::with_error(MU_STAR, row);
     let place = parameters_in_words(row);
     let percent = value::significant(100.0 * record.mu_star / row.parameters.mu(), 2);
     Some(format!("μ* falls furthest below μ at {place}: to {mu_star}, {percent} % of μ."))
@@ -197,29 +193,24 @@ pub(super) fn numbers(rows: &[JobRow]) -> Vec<Block> {
     std::iter::once(Block::Tiles(tiles)).chain(accuracy).collect()
 }
 
-/// The largest error of μ\* that mesh and step make, or that it is not measured.
+/// The largest error of μ\* by the mesh, relative to μ\*, and where it is unknown.
 fn error_of_friction(rows: &[JobRow]) -> Option<Tile> {
-    let done = || rows.iter().filter(|row| row.record().is_some());
-    let errors: Vec<Option<f64>> =
-        done().map(|row| Some(row.discretisation.error()?.mu_star_relative)).collect();
-    if errors.is_empty() {
-        return None;
+    let done: Vec<&JobRow> = rows.iter().filter(|row| row.record().is_some()).collect();
+    let share = |row: &JobRow| Some(row.mesh_error()?.mu_star / row.record()?.mu_star.abs());
+    let known: Vec<(f64, &JobRow)> = done.iter().filter_map(|row| Some((share(row)?, *row))).collect();
+    let unknown = done.len() - known.len();
+    let title = "error of the mesh";
+    match known.iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
+        None => (unknown > 0).then(|| Tile::new(title, "unknown", "")),
+        Some((share, row)) => {
+            let place = format!("of μ*, at {}", parameters_in_words(row));
+            let note = match unknown {
+                0 => place,
+                some => format!("{place}; unknown in {} of {}", some, value::count(done.len(), "job")),
+            };
+            Some(Tile::new(title, format!("≤ {} %", value::significant(100.0 * share, 2)), note))
+        }
     }
-    let Some(largest) = errors.iter().flatten().copied().max_by(f64::total_cmp) else {
-        return Some(Tile::new("error of mesh and step", "not measured", ""));
-    };
-    let is_indicative = |row: &JobRow| matches!(row.discretisation, Discretisation::Indicative(_));
-    let note = if errors.contains(&None) {
-        "of μ*; in some jobs not measured"
-    } else if done().all(is_indicative) {
-        "of μ*, indicative: of another scene, friction or speed"
-    } else if done().any(is_indicative) {
-        "of μ*; indicative in some jobs"
-    } else {
-        "of μ*, measured on this scene"
-    };
-    let largest = format!("≤ {} %", value::significant(100.0 * largest, 2));
-    Some(Tile::new("error of mesh and step", largest, note))
 }
 
 fn residuals(rows: &[JobRow]) -> Option<Tile> {

@@ -3,7 +3,6 @@
 use crate::analysis::Outcome;
 use crate::publish::page::{Block, Grid, Section, Text};
 use crate::publish::value;
-use crate::report::digits;
 use crate::report::layout::parameters_in_words;
 use crate::report::row::{JobRow, RowState};
 use crate::report::scalar::MU_STAR;
@@ -51,7 +50,7 @@ fn not_periodic(row: &JobRow) -> Option<Text> {
         "{}; after {} μ* = {} over {} cycles",
         trouble::cause(row)?.why,
         value::quantity(record.simulated_s, "s"),
-        digits::with_error(MU_STAR, row),
+        MU_STAR.text_with_error(record.mu_star, Some(record.mu_star_se)),
         record.cycles
     );
     Some(words.into())

@@ -6,7 +6,6 @@ use super::ranges::{Edge, Interval, Known, Onset, Speed, intervals};
 use crate::analysis::ComplexMode;
 use crate::analysis::branches::{Sample, branches};
 use crate::publish::value;
-use crate::report::Discretisation;
 use crate::report::layout::{Group, Layout};
 use crate::report::parameters::Parameters;
 use crate::report::row::{JobRow, RowState};
@@ -31,7 +30,6 @@ pub(in crate::report) fn rows(points: &[StabilityPoint], along: &Along) -> Vec<J
         state: RowState::Pending,
         wall_s: None,
         numerics: None,
-        discretisation: Discretisation::NotMeasured,
         wave: 0,
         why: None,
         inputs: Vec::new(),

@@ -23,6 +23,9 @@ pub enum Preset {
 /// Largest refinement, relative to the desired element count, to get a node row at the clamp's edge.
 const MAX_REFINEMENT: usize = 4;
 
+/// Elements of the finest mesh of a job that asks for an accuracy over those of a draft, in each direction.
+const FINEST: usize = 4;
+
 /// Largest number of element counts that are tried: a pin of absurd size must not make the search long.
 const MAX_TRIED_COUNTS: usize = 10_000;
 
@@ -102,6 +105,12 @@ impl Preset {
         elements
     }
 
+    /// The finest mesh of a job that asks for an accuracy and gives no mesh. Halved twice it is the draft's, which has a row of nodes at the
+    /// clamp's edge, so all of them have one.
+    pub(in crate::study) fn finest_elements(pin: &Pin, clamp: &Clamp) -> [usize; 3] {
+        Self::Draft.elements(pin, clamp).map(|count| FINEST * count)
+    }
+
     /// Parameters that have no effect beside a preset that takes precedence: those that it sets, and the time step, which
     /// takes precedence over the safety factor.
     pub(in crate::study) const COVERS: &'static [&'static str] =
@@ -119,7 +128,7 @@ impl Preset {
         if !gives("precision") && job.suits_single_precision() {
             job.numerics.precision = Precision::Single;
         }
-        if self == Self::Draft {
+        if self == Self::Draft && job.accuracy.is_none() {
             return;
         }
         if !gives("start") && job.run.stop_early {
