@@ -101,7 +101,7 @@ def claims():
 
     lines = [
         ["limit-cycle frequency at 7 rpm", "14 500 Hz", f"{reference['frequency_hz']:.0f} Hz",
-         near(reference["frequency_hz"], 14500, 0.02) + "; why (rigid disk, full integration, clamp) is open"],
+         near(reference["frequency_hz"], 14500, 0.02) + "; [choices.md](choices.md) has what may explain it"],
         ["frequency independent of ω (μ = 0.4)", "one value",
          f"{min(frequencies):.0f}–{max(frequencies):.0f} Hz over 0.5–100 rpm",
          verdict(spread < 0.01, f"differs a little: it varies by {100 * spread:.0f} %")],
