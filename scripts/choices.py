@@ -414,16 +414,16 @@ def no_choice(choices):
     nearest = min(choices, key=lambda of: of.off)
     with_v = min((of for of in choices if of.has_v), key=lambda of: of.off)
     at_6 = any(near(of.cycles.get(OMEGA_MIN), HZ, 0.02) for of in choices)
-    return (f"None of the choices has 14.5 kHz within 2 % at all speeds{'' if at_6 else ', and none at 6 rpm'}. The nearest is “{nearest.words}” ({nearest.frequencies(" Hz")}, "
+    return (f"None of the choices has 14.5 kHz within 2 % at all speeds{'' if at_6 else ', and none at 6 rpm'}. The nearest is “{nearest.words}” ({nearest.frequencies(' Hz')}, "
             f"{100 * nearest.off:.1f} % off at most; its minimum of μ\\* is at {physics.minimum_in_words(nearest.rows)}). The nearest with the V is “{with_v.words}” "
-            f"({with_v.frequencies(" Hz")}, {100 * with_v.off:.1f} %).")
+            f"({with_v.frequencies(' Hz')}, {100 * with_v.off:.1f} %).")
 
 
 def no_scene(found, figure7):
     """Whether a scene of the search has both; the nearest ones, and what would have to be true."""
     has = [of for of in found if of.has_hz and of.has_v]
     with_v = sorted((of for of in found if of.has_v), key=lambda of: of.off)
-    near_ones = "; ".join(f"{of.words}: {of.frequencies(" Hz")}, {100 * of.off:.1f} % off at most, within 2 % at {of.near_hz()}" for of in with_v)
+    near_ones = "; ".join(f"{of.words}: {of.frequencies(' Hz')}, {100 * of.off:.1f} % off at most, within 2 % at {of.near_hz()}" for of in with_v)
     if has:
         return "Scenes with both at all speeds: " + "; ".join(of.words for of in has) + "."
     return ("No scene has the V and 14.5 kHz within 2 % at all speeds. The nearest with the V: " + near_ones + ". What would have to be true: "
