@@ -137,7 +137,7 @@ def early_stop():
               f"{row['mu_star']:.4f}", f"{change:.5f}"] for change, row in changes[:6]]
     median = changes[len(changes) // 2][0]
     return (
-        f"The points of `figure7` on 12 × 15 × 10 elements. Each of the {len(changes)} jobs that stopped early is compared with the mean over the last "
+        f"The points of `figure7` on 12 × 15 × 10 elements, with its damping (β_R = 27.5 ns). Each of the {len(changes)} jobs that stopped early is compared with the mean over the last "
         f"40 % of 20 ms of the same job. The median change of μ* is {median:.5f}, the largest {changes[0][0]:.5f}. Simulated time: "
         f"{simulated[0]:.2f} s instead of {simulated[1]:.2f} s. The largest changes:\n\n"
         + runs.table(["μ", "ω [rpm]", "status", "stopped at [ms]", "μ*", "change"], worst)

@@ -184,7 +184,7 @@ def main():
     assert frequency[6.7] - frequency[6.9] > 2 * (frequency[6.6] - frequency[6.7])
     text = f"""# What plans that learn find
 
-Written by `scripts/growing.py`; do not edit. Reference scene on 12 × 15 × 10 elements.
+Written by `scripts/growing.py`; do not edit. Reference scene on 12 × 15 × 10 elements, β_R = 27.5 ns unless another one is named.
 [points.md](points.md#plans-that-learn) says how such studies are written.
 
 ## Where squeal begins, and where the curve turns
@@ -201,7 +201,7 @@ some steps apart, with the same μ\\*.
 
 ## Two limit cycles at 7 rpm
 
-With a clamp of 2 mm and a step of 4·10⁻⁷ s (`studies/branches.json`), each job continues its neighbour, in steps of 0.1 rpm from 6 to 8 rpm
+All of this section has β_R = 50 ns. With a clamp of 2 mm and a step of 4·10⁻⁷ s (`studies/branches.json`), each job continues its neighbour, in steps of 0.1 rpm from 6 to 8 rpm
 and back. From {found_branches['two'][0]['omega_rpm']} to {found_branches['two'][-1]['omega_rpm']} rpm the two ways are on different limit cycles:
 
 {of_branches}

@@ -27,7 +27,8 @@
 //!         for row in &rows {
 //!             // Stick phases make the measured coefficient μ* smaller than the local coefficient μ.
 //!             let mu_star = row.record().map_or(f64::NAN, |record| record.mu_star);
-//!             assert!(0.5 * row.mu < mu_star && mu_star < 1.001 * row.mu, "{mu_star}");
+//!             let mu = row.parameters.mu();
+//!             assert!(0.5 * mu < mu_star && mu_star < 1.001 * mu, "{mu_star}");
 //!         }
 //!         Ok(())
 //!     })

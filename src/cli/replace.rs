@@ -81,7 +81,7 @@ fn log_changes(plan: &Plan, replaced: &Replaced) {
     match plan.difference_from(document) {
         Ok(difference) if difference.inputs.is_empty() => {
             log(
-                "  no input takes other values: the combinations, the way in which the study grows, the shard or the version of the program differ",
+                "  no input takes other values: the combinations, the way in which the study grows, the shard or the version of the program differ, or a default has changed since (the damping was 50 ns where a study gives none)",
             );
         }
         Ok(difference) => difference.inputs.iter().for_each(|input| log(format!("  {}", input.in_words()))),

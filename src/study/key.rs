@@ -13,9 +13,10 @@ const HEX_DIGITS: usize = 32;
 
 /// The key of a job under a version of the solver: BLAKE3 of its canonical JSON, 32 hex digits.
 ///
-/// The JSON has the fields that have an effect and not the default values of the first version with them. In canonical JSON the fields are sorted, there is no
-/// space, and numbers have their shortest exact form, with 0 for −0. A field that a later version adds leaves the keys of jobs that do
-/// not use it as they are. A new `solver_version` changes every key, so that old results are not taken for new ones.
+/// The JSON has the fields that have an effect, without those that have the default value of the first version with them. In
+/// canonical JSON the fields are sorted, there is no space, and numbers have their shortest exact form, with 0 for −0. A field that
+/// a later version adds leaves the keys of jobs that do not use it as they are. A new `solver_version` changes every key, so that
+/// old results are not taken for new ones.
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     static LEFT_OUT: LazyLock<Value> = LazyLock::new(|| encode(&left_out()));
     let mut job = encode(&without_synonyms(spec));

@@ -57,12 +57,29 @@ impl Study {
         Self::read(text, source_name, changes, changes.is_of_modes, true)
     }
 
-    /// As [`Study::parse`], for the document of a study in a database. It may be one of complex modes.
+    /// As [`Study::parse`], for the document of a study in a database. It may be one of complex modes. A damping that it does not
+    /// give is `beta_r_s` \[s\], that of its stored jobs: the default was another one in earlier versions.
     ///
     /// # Errors
     /// Those of [`Study::parse`].
-    pub fn parse_stored(document: &str, name: &str) -> Result<Self, StudyError> {
-        Self::read(document, name, &Changes::default(), true, false)
+    pub fn parse_stored(document: &str, name: &str, beta_r_s: Option<f64>) -> Result<Self, StudyError> {
+        let read = |changes: &Changes| Self::read(document, name, changes, true, false);
+        let study = read(&Changes::default())?;
+        match beta_r_s.filter(|own| *own != study.base.numerics.beta_r_s && !study.gives_damping()) {
+            Some(own) => {
+                let settings = vec![("beta_r_s".to_owned(), own.to_string())];
+                read(&Changes { settings, ..Changes::default() })
+            }
+            None => Ok(study),
+        }
+    }
+
+    fn gives_damping(&self) -> bool {
+        let beta_r_s = Parameter::named("beta_r_s");
+        let is_meant = |varied: &'static Parameter| {
+            varied == beta_r_s || varied.displaces().any(|other| other == beta_r_s)
+        };
+        self.source.gives("damping") || self.source.gives(&beta_r_s.field()) || self.varied().any(is_meant)
     }
 
     fn read(

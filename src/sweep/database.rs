@@ -1,6 +1,7 @@
 //! Opening the database, and studies by name or file.
 
 use super::error::SweepError;
+use super::rows::StoredParameters;
 use crate::queue::{Clock, Location, Queue, QueueError, Settings};
 use crate::study::Study;
 use std::future::Future;
@@ -109,8 +110,31 @@ pub async fn load_study(study: &str, database: &Location) -> Result<Study, Sweep
         return Ok(Study::load(path)?);
     }
     let queue = open_to_read(database.clone()).await?;
-    let document = with_open(queue, async |queue| document(queue, study).await).await?;
-    Ok(Study::parse_stored(&document, study)?)
+    with_open(queue, async |queue| stored_study(queue, study).await).await
+}
+
+/// A study of the database, with the jobs that it had when it was submitted.
+///
+/// # Errors
+/// [`QueueError::UnknownStudy`]; if the database cannot be read, or this version cannot read the study.
+pub(super) async fn stored_study(queue: &mut Queue, study: &str) -> Result<Study, SweepError> {
+    let document = document(queue, study).await?;
+    let mut parameters = queue.pages_of_parameters(study).await?;
+    let first = queue.next_page(&mut parameters).await?.and_then(|page| page.into_iter().next());
+    let stored = first.and_then(|text| serde_json::from_str::<StoredParameters>(&text).ok());
+    Ok(Study::parse_stored(&document, study, stored.map(|own| own.numerics.beta_r_s))?)
+}
+
+/// As [`stored_study`]; none if the database has no such study, or if this version cannot read it.
+///
+/// # Errors
+/// If the database cannot be read.
+pub(super) async fn readable_study(queue: &mut Queue, study: &str) -> Result<Option<Study>, SweepError> {
+    match stored_study(queue, study).await {
+        Ok(study) => Ok(Some(study)),
+        Err(SweepError::Study(_) | SweepError::Queue(QueueError::UnknownStudy { .. })) => Ok(None),
+        Err(error) => Err(error),
+    }
 }
 
 /// The document of a study in the database, as it was submitted.

@@ -138,7 +138,7 @@ impl Plan {
     /// # Errors
     /// If this version cannot read the document.
     pub fn difference_from(&self, document: &str) -> Result<Difference, SweepError> {
-        let old = Study::parse_stored(document, self.name())?.expand(solver::VERSION)?;
+        let old = Study::parse_stored(document, self.name(), None)?.expand(solver::VERSION)?;
         Ok(Difference::between(&old, &self.jobs))
     }
 

@@ -1,5 +1,6 @@
 //! The report of a study, and whether it has to be written again.
 
+use super::database::{readable_study, stored_study};
 use super::error::SweepError;
 use super::growth::read_growth;
 use super::request::{ReportContent, ReportRequest};
@@ -7,7 +8,7 @@ use super::rows::read_rows;
 use super::stability::{name_of_modes, read_stability, way_of};
 use super::{provenance, sheet};
 use crate::publish::Sheet;
-use crate::queue::{Counts, Queue, Scope};
+use crate::queue::{Counts, Queue, QueueError, Scope};
 use crate::report::Along;
 use crate::report::{
     JobRow, Provenance, Report, StabilityPoint, View, Written, write_compared, write_stability,
@@ -146,8 +147,7 @@ impl Surroundings {
 async fn definitions(queue: &mut Queue, studies: &[String]) -> Result<Vec<Study>, SweepError> {
     let mut definitions = Vec::new();
     for name in studies {
-        let document = queue.study(name).await?.map(|found| found.document);
-        definitions.extend(document.and_then(|text| Study::parse_stored(&text, name).ok()));
+        definitions.extend(readable_study(queue, name).await?);
     }
     Ok(definitions)
 }
@@ -160,9 +160,8 @@ async fn stability(
     let none = || (Vec::new(), Along::mu());
     let [study] = studies else { return Ok(none()) };
     let modes = name_of_modes(study);
-    let Some(stored) = queue.study(&modes).await? else { return Ok(none()) };
     // Modes of a version whose study this one cannot read are left out.
-    let Ok(definition) = Study::parse_stored(&stored.document, &modes) else { return Ok(none()) };
+    let Some(definition) = readable_study(queue, &modes).await? else { return Ok(none()) };
     Ok((read_stability(queue, &modes).await?, way_of(&definition)))
 }
 
@@ -182,18 +181,19 @@ async fn warnings(queue: &mut Queue, studies: &[String]) -> Result<[Vec<String>;
     let mut found = [Vec::new(), Vec::new()];
     for name in studies {
         // A study may have been removed in between.
-        let Some(stored) = queue.study(name).await? else { continue };
-        let [doubts, remarks] = match Study::parse_stored(&stored.document, name) {
+        let [doubts, remarks] = match stored_study(queue, name).await {
+            Err(SweepError::Queue(QueueError::UnknownStudy { .. })) => continue,
             Ok(study) => {
                 let (doubts, remarks): (Vec<Warning>, Vec<Warning>) =
                     study.warnings().into_iter().partition(Warning::is_doubt);
                 [doubts, remarks].map(|part| part.iter().map(Warning::in_words).collect())
             }
-            Err(error) => {
+            Err(SweepError::Study(error)) => {
                 let text =
                     format!("this version cannot read the study, so its inputs are not checked: {error}");
                 [vec![text], Vec::new()]
             }
+            Err(error) => return Err(error),
         };
         let named = |warning: String| if studies.len() > 1 { format!("{name}: {warning}") } else { warning };
         for (all, own) in found.iter_mut().zip([doubts, remarks]) {

@@ -1,5 +1,6 @@
 //! What a report is asked to show: studies and measured points side by side, and the axes.
 
+use super::database::readable_study;
 use super::difference::{Difference, InputDifference};
 use super::error::SweepError;
 use super::measured::{self, MeasuredFile};
@@ -108,8 +109,7 @@ impl ReportRequest {
     async fn stored(&self, queue: &mut Queue) -> Result<Vec<StoredStudy>, SweepError> {
         let mut studies = Vec::new();
         for name in &self.studies {
-            let document = queue.study(name).await?;
-            let study = document.and_then(|found| Study::parse_stored(&found.document, name).ok());
+            let study = readable_study(queue, name).await?;
             studies.push(StoredStudy { name: name.clone(), study });
         }
         Ok(studies)

@@ -199,6 +199,34 @@ fn a_stored_job_is_inspected_as_submitted() {
     assert_eq!((&scene["load"]["force_n"], &scene["contact"]["mu"]), (&json!(30.0), &json!(0.2)));
 }
 
+/// Protects: a study that was submitted without a damping, when the default was another one, keeps that of its jobs: in `inspect` by
+/// parameters, in `diff`, and in the report. Submitted again it is told apart, and the default is named.
+#[test]
+fn a_stored_study_keeps_the_default_of_its_time() {
+    let mut study = small(&json!({ "mu": [0.4], "omega_rpm": [7] }));
+    study["numerics"] = json!({ "beta_r_s": 5e-8 });
+    let folder = Folder::with("mine", &study);
+    folder.ok("run mine.json");
+    // As a version wrote it whose default was 50 ns.
+    change(&folder, r#"UPDATE studies SET document = replace(document, '"beta_r_s":5e-8', '')"#);
+    let row = rows(&folder.ok("export mine")).remove(0);
+    folder.ok("inspect mine mu=0.4 omega_rpm=7");
+    let found = parsed(&folder.read("reports/mine/inspect/mu-0.4_omega_rpm-7/inspection.json"));
+    assert_eq!(found["job"]["numerics"]["beta_r_s"], json!(5e-8));
+    assert_eq!(found["record"]["mu_star"].to_string(), row["mu_star"]);
+    let same = Folder::with("mine", &study);
+    std::fs::copy(folder.path("tribosweep.db"), same.path("tribosweep.db")).unwrap();
+    same.ok("diff mine mine.json");
+    study["numerics"] = json!({});
+    folder.add("mine", &study);
+    let refused = folder.command("run mine.json").assert().code(2);
+    assert!(
+        stderr(&refused).contains("a default has changed since (the damping was 50 ns"),
+        "{}",
+        stderr(&refused)
+    );
+}
+
 /// Protects: the windows of a job whose speed changes are exported, with the study and the job, and a job without a program
 /// has none. Its status is `completed`.
 #[test]

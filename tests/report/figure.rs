@@ -83,6 +83,12 @@ fn a_span_holds_all_jobs_of_its_speed() {
         other("second", 2.0, 0.33, "both_ends"),
         other("second", 7.0, 0.29, "both_ends"),
         job("third", 7.0, 0.27),
+        // Two jobs of the first study are no line, also if only one of them has settled.
+        job("first", 9.0, 0.28),
+        JobRow {
+            state: done(Outcome::NotPeriodic, Regime::Undecided, 0.2),
+            ..other("first", 9.0, 0.2, "both_sides")
+        },
         // A run that is not periodic has no place in the span.
         JobRow {
             state: done(Outcome::NotPeriodic, Regime::Undecided, 0.1),

@@ -42,6 +42,51 @@ fn a_scheme_has_its_damping_at_its_time_step() {
     assert_eq!(found, [0.0, 0.5 * 5.5e-8]);
 }
 
+/// Protects: a study that was stored without a damping has that of its jobs, although the default is another one today; a damping
+/// that the study gives in any way, or varies, stays.
+#[test]
+fn a_stored_study_keeps_its_damping() {
+    let stored = |text: &str| {
+        let study = Study::parse_stored(text, "x", Some(5.0e-8)).unwrap();
+        study.expand("1").unwrap().iter().map(|job| job.spec.numerics.beta_r_s).collect::<Vec<_>>()
+    };
+    let plain = r#"{ "name": "x", "scene": { "contact": { "mu": 0.4 } } }"#;
+    assert_eq!(stored(plain), [5.0e-8]);
+    assert_eq!(parse(plain).base().numerics.beta_r_s, 2.75e-8);
+    assert_eq!(stored(r#"{ "name": "x", "numerics": { "beta_r_s": 1e-8 } }"#), [1.0e-8]);
+    assert_eq!(
+        stored(r#"{ "name": "x", "damping": { "beta2": 1, "at_time_step_s": 5.5e-8 } }"#),
+        [0.5 * 5.5e-8]
+    );
+    assert_eq!(stored(r#"{ "name": "x", "grid": { "beta_r_s": [0, 1e-8] } }"#), [0.0, 1.0e-8]);
+    assert_eq!(
+        stored(
+            r#"{ "name": "x", "damping": { "at_time_step_s": 5.5e-8 }, "grid": { "damping_beta2": [0.5] } }"#
+        ),
+        [0.0]
+    );
+}
+
+/// Protects: nobody has two dampings without a word, and a time step in the wrong unit is looked for in its own field.
+#[test]
+fn doubtful_dampings_are_named() {
+    let warnings = |text: &str| {
+        let all = parse(text).warnings();
+        all.iter().map(|warning| format!("{}: {}", warning.kind, warning.in_words())).collect::<Vec<_>>()
+    };
+    let both = warnings(r#"{ "numerics": { "beta2": 1, "time_step_s": 5.5e-8 } }"#);
+    assert_eq!(both.len(), 1, "{both:?}");
+    assert_contains(
+        &both[0],
+        &["two_dampings: numerics.beta2", "(β₂ − ½) Δt = 2.75e-8 s", "β_R = 2.75e-8 s"],
+    );
+    assert!(warnings(r#"{ "numerics": { "beta2": 1, "beta_r_s": 0 } }"#).is_empty());
+    assert!(warnings(r#"{ "numerics": { "beta2": 1, "beta_r_s": 5e-8 } }"#).is_empty());
+    assert!(warnings(r#"{ "damping": { "beta2": 1, "at_time_step_s": 5.5e-8 } }"#).is_empty());
+    let in_ns = warnings(r#"{ "damping": { "beta2": 1, "at_time_step_s": 55 } }"#);
+    assert!(in_ns.iter().any(|text| text.contains("damping.at_time_step_s = 55")), "{in_ns:?}");
+}
+
 #[test]
 fn damping_can_be_varied() {
     let study = parse(

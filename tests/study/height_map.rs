@@ -35,7 +35,7 @@ fn jobs_contain_the_heights() {
     let document = found.document();
     assert!(document.contains("// rough") && !document.contains("map.csv"), "{document}");
     std::fs::remove_file(first.path().join("map.csv")).unwrap();
-    let stored = Study::parse_stored(&document, "rough").unwrap();
+    let stored = Study::parse_stored(&document, "rough", None).unwrap();
     assert_eq!(keys(&stored), keys(&found));
 
     let renamed = folder("other.txt", &MAP.replace(' ', ";"));
@@ -75,6 +75,6 @@ fn a_bad_map_is_named() {
     let error = Study::load(&path).unwrap_err();
     assert_eq!(error.problems()[0].position.unwrap().line, 4, "{error}");
     // A document of a database that names a file was not made by this program.
-    let error = Study::parse_stored(text, "rough").unwrap_err().to_string();
+    let error = Study::parse_stored(text, "rough", None).unwrap_err().to_string();
     assert!(error.contains("height_map.file"), "{error}");
 }

@@ -132,7 +132,7 @@ fn job(text: &str, name: &str, pin: &str) -> Result<JobSpec, String> {
         Study::parse(&study, &place.display().to_string()).map_err(|error| in_folder(error.to_string()))?;
     // The stored document needs no file.
     drop(folder);
-    let stored = Study::parse_stored(&study.document(), "study").map_err(|error| error.to_string())?;
+    let stored = Study::parse_stored(&study.document(), "study", None).map_err(|error| error.to_string())?;
     let job = stored.expand("1").map_err(|error| error.to_string())?.swap_remove(0).spec;
     Ok(job)
 }

@@ -347,7 +347,7 @@ fn a_pin_compressed_to_nothing_is_refused() {
     // E A of the reference pin is 180 kN.
     assert!(Study::parse(&study(179_000.0), "x").is_ok());
     assert_contains(&refusal(&study(181_000.0)), &["mean strain", "it is 1.01", "E = 1e9 Pa"]);
-    assert!(Study::parse_stored(&study(181_000.0), "x").is_ok());
+    assert!(Study::parse_stored(&study(181_000.0), "x", None).is_ok());
 }
 
 /// Protects: names that make trouble are refused before anything runs, with one that is possible; stored ones are read.
@@ -358,7 +358,7 @@ fn bad_names_get_an_offer() {
     assert_contains(&refusal(&named(&"x".repeat(300))), &["300 letters", "at most 200"]);
     for name in ["-rf", "con", &"x".repeat(300)] {
         refusal(&named(name));
-        assert!(Study::parse_stored(&named(name), name).is_ok(), "{name}");
+        assert!(Study::parse_stored(&named(name), name, None).is_ok(), "{name}");
     }
 }
 

@@ -41,7 +41,7 @@ fn points_lists_and_files_are_the_same_jobs() {
     let study = Study::parse(&file, &folder.path().join("x.json").display().to_string()).unwrap();
     drop(folder);
     assert_eq!(study.expand("1").unwrap(), listed);
-    assert_eq!(Study::parse_stored(&study.document(), "x").unwrap().expand("1").unwrap(), listed);
+    assert_eq!(Study::parse_stored(&study.document(), "x", None).unwrap().expand("1").unwrap(), listed);
 }
 
 /// Protects: samples are combined with all values of the grid, the samples slowest, and a range in a list has as many values as the
@@ -109,7 +109,7 @@ fn the_order_of_parameters_does_not_matter() {
         "omega_rpm": { "log_uniform": [1, 100] }, "mu": { "uniform": [0.1, 0.6] } } } }"#;
     let changes = Changes { settings: vec![("load_n".to_owned(), "20".to_owned())], ..Changes::default() };
     let changed = Study::parse_changed(text, "x.json", &changes).unwrap();
-    let again = Study::parse_stored(&changed.document(), "x").unwrap();
+    let again = Study::parse_stored(&changed.document(), "x", None).unwrap();
     let keys = |study: &Study| study.expand("1").unwrap().into_iter().map(|job| job.key).collect::<Vec<_>>();
     assert_eq!(keys(&changed), keys(&again));
     let original = Study::parse(text, "x.json").unwrap().expand("1").unwrap();
@@ -140,7 +140,7 @@ fn conditions_keep_points() {
     let changed = Study::parse_changed(&study, "x.json", &changes).unwrap();
     assert_eq!(values(&changed.expand("1").unwrap(), "omega_rpm"), [1.0, 10.0]);
     assert_eq!(
-        Study::parse_stored(&changed.document(), "x").unwrap().expand("1").unwrap(),
+        Study::parse_stored(&changed.document(), "x", None).unwrap().expand("1").unwrap(),
         changed.expand("1").unwrap()
     );
 }

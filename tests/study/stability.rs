@@ -65,7 +65,7 @@ fn the_study_of_modes_has_the_points_of_the_study() {
     let names: Vec<_> = jobs[0].parameters.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["mu", "omega_rpm"]);
     let document = modes.document();
-    assert_eq!(Study::parse_stored(&document, "x").unwrap().expand("1").unwrap(), jobs);
+    assert_eq!(Study::parse_stored(&document, "x", None).unwrap().expand("1").unwrap(), jobs);
     assert_contains(&refusal(&document), &["stability = \"modes\""]);
 }
 

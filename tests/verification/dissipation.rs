@@ -5,6 +5,8 @@
 //! body moves in the same way. With contact, the same term of the contact forces remains. It shifts them in time by
 //! (β₂ − ½) Δt and leaves their impulses as they are, so limit cycles differ only where nodes change their states.
 
+use std::f64::consts::PI;
+
 use crate::common::{IDLE, ROUNDINGS_PER_FORCE, advance, bar};
 use tribosweep_mechanics::analysis::{Outcome, Unobserved, solve};
 use tribosweep_mechanics::solver::{Model, ModelDefinition, State, TimeStep};
@@ -33,23 +35,26 @@ fn a_free_bar_moves_in_the_same_way() {
         };
         let of_scheme = moved(beta2, 0.0);
         let of_material = moved(0.5, (beta2 - 0.5) * dt);
+        let undamped = moved(0.5, 0.0);
         let bound = ROUNDINGS_PER_FORCE * 8.0 * f64::EPSILON * f64::from(steps as u32).powi(2) / 2.0;
         let mut largest = 0.0_f64;
-        for (a, b) in of_scheme.iter().zip(&of_material) {
+        for ((a, b), c) in of_scheme.iter().zip(&of_material).zip(&undamped) {
             assert!((a - b).abs() < bound, "β₂ = {beta2}: {a}, not {b}");
-            largest = largest.max((a - moved(0.5, 0.0)[0]).abs());
+            largest = largest.max((a - c).abs());
         }
         assert!(largest > 1e-3, "without damping the bar would move in the same way, too");
     }
 }
 
-/// Protects: limit cycles do not tell the scheme's damping from the same β_R, at two time steps and three speeds. μ\* differs by
-/// less than a tenth of what it gains if the damping grows from a fifth to this value, and the frequency by less than 10⁻³.
+/// Protects: limit cycles do not tell the scheme's damping from the same β_R, on two meshes, at three time steps and three speeds, β₂ = 1
+/// at 55 ns among them. What remains are contact forces that come earlier or later by β_R. In a cycle of the angular frequency ω that changes
+/// them by ω β_R of their amplitude, in quadrature, so μ\* changes by less than half of this share. At 2 and 7 rpm four fifths of the
+/// damping change it by more than that. The frequency changes by less than 10⁻³.
 #[test]
 fn limit_cycles_have_the_same_friction() {
-    let cycle = |omega_rpm: f64, beta2: f64, beta_r_s: f64, time_step_s: f64| {
+    let cycle = |elements: [usize; 3], omega_rpm: f64, beta2: f64, beta_r_s: f64, time_step_s: f64| {
         let mut spec = JobSpec::default();
-        spec.scene.pin.elements = [6, 8, 5];
+        spec.scene.pin.elements = elements;
         spec.scene.clamp.width_m = 0.002;
         spec.scene.contact.mu = 0.4;
         spec.scene.disk.omega_rpm = omega_rpm;
@@ -62,16 +67,30 @@ fn limit_cycles_have_the_same_friction() {
     };
     // The damping of β₂ = 1 at the time step of Baillet, d'Errico and Berthier (2005).
     let beta_r_s = 0.5 * 5.5e-8;
-    for omega_rpm in [2.0, 7.0, 35.0] {
-        for time_step_s in [1.1e-7, 2.2e-7] {
+    let cases = [
+        ([6, 8, 5], 5.5e-8),
+        ([6, 8, 5], 1.1e-7),
+        ([6, 8, 5], 2.2e-7),
+        ([12, 15, 10], 5.5e-8),
+        ([12, 15, 10], 2.2e-7),
+    ];
+    for (elements, time_step_s) in cases {
+        for omega_rpm in [2.0, 7.0, 35.0] {
             let beta2 = 0.5 + beta_r_s / time_step_s;
-            let of_scheme = cycle(omega_rpm, beta2, 0.0, time_step_s);
-            let of_material = cycle(omega_rpm, 0.5, beta_r_s, time_step_s);
-            let (less, _) = cycle(omega_rpm, 0.5, 0.2 * beta_r_s, time_step_s);
-            let gain = of_material.0 - less;
-            assert!(gain > 1e-3, "{omega_rpm} rpm: {gain}");
+            let of_scheme = cycle(elements, omega_rpm, beta2, 0.0, time_step_s);
+            let of_material = cycle(elements, omega_rpm, 0.5, beta_r_s, time_step_s);
+            let remains = PI * of_material.1 * beta_r_s * of_material.0;
             let difference = (of_scheme.0 - of_material.0).abs();
-            assert!(difference < 0.1 * gain, "{omega_rpm} rpm, {time_step_s} s: {difference} of {gain}");
+            assert!(
+                difference < remains,
+                "{elements:?}, {omega_rpm} rpm, {time_step_s} s: {difference}, and {remains} may remain"
+            );
+            // At 35 rpm μ* hardly depends on the damping.
+            if omega_rpm < 35.0 {
+                let (less, _) = cycle(elements, omega_rpm, 0.5, 0.2 * beta_r_s, time_step_s);
+                let gain = of_material.0 - less;
+                assert!(gain > remains, "{elements:?}, {omega_rpm} rpm: {gain}, and {remains} may remain");
+            }
             assert!((of_scheme.1 / of_material.1 - 1.0).abs() < 1e-3, "{of_scheme:?}, {of_material:?}");
         }
     }

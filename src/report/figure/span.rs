@@ -1,5 +1,5 @@
 //! The span of a number where only the parameter along the axis and that of the curves are known: a panel for each curve, with the band
-//! between the smallest and the largest value of all jobs, and the line of the first source. A dot is a job in the colour of its source.
+//! between the smallest and the largest value of all jobs that have settled, and the line of the first source if that has one job at each place. A dot is a job in the colour of its source.
 //! The mean of a run that is not periodic is a hollow dot, and no part of band and line.
 
 use super::curves::is_periodic;
@@ -42,21 +42,20 @@ pub(super) fn draw(layout: &Layout, groups: &[Group], scalar: &Scalar) -> Chart 
 /// The band, the lines and the dots of a panel.
 fn layers(layout: &Layout, scalar: &Scalar, own: &[Place], guide: Option<f64>) -> Vec<Layer> {
     let value = |place: &Place| scalar.value(place.row);
-    let is_first = |place: &&&Place| layout.series[place.series].source == 0;
+    let is_first = |place: &&Place| layout.series[place.series].source == 0;
     let (mut below, mut above, mut line): (Vec<At>, Vec<At>, Vec<At>) = Default::default();
-    let settled: Vec<&Place> = own.iter().filter(|place| is_periodic(place.row)).collect();
-    for here in settled.chunk_by(|a, b| a.x == b.x) {
-        let value = |place: &&Place| value(place);
-        let first: Vec<f64> = here.iter().filter(is_first).filter_map(value).collect();
-        // Several jobs of the first source have no line of their own.
-        line.extend(first.first().filter(|_| first.len() == 1).map(|y| (here[0].x, *y)));
+    for here in own.chunk_by(|a, b| a.x == b.x) {
+        // Several jobs of the first source have no line of their own, also where only one of them has settled.
+        let first = only(here.iter().filter(is_first)).filter(|place| is_periodic(place.row)).and_then(value);
+        line.extend(first.map(|y| (here[0].x, y)));
+        let here: Vec<&Place> = here.iter().filter(|place| is_periodic(place.row)).collect();
         // Where there is one job alone, nothing is known about the others.
-        if here.len() == 1 {
+        if here.len() < 2 {
             continue;
         }
         let (low, high) = here
             .iter()
-            .filter_map(value)
+            .filter_map(|place| value(place))
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
         below.push((here[0].x, low));
         above.push((here[0].x, high));
@@ -72,6 +71,11 @@ fn layers(layout: &Layout, scalar: &Scalar, own: &[Place], guide: Option<f64>) -
     let line = Layer::Line { points: line, pen: Pen::solid(INK, 2.0), right: false };
     let dots = Layer::Points(own.iter().filter_map(dot).collect());
     guide.into_iter().chain([Layer::Area(corners, GREY, COVER), line, dots]).collect()
+}
+
+/// The only item, if there is one alone.
+fn only<T>(mut items: impl Iterator<Item = T>) -> Option<T> {
+    items.next().filter(|_| items.next().is_none())
 }
 
 fn dot_of(layout: &Layout, source: usize) -> Marker {

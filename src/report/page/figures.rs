@@ -31,9 +31,10 @@ pub(super) fn friction(parts: &Parts) -> Section {
     );
     let mut blocks = figures(parts, Plot::MuStar, &caption);
     let span = format!(
-        "Span of μ* {}: a panel for each {}, from the smallest to the largest value of all jobs there. Line: {}.",
+        "Span of μ* {}: a panel for each {}, from the smallest to the largest value of all jobs there that have settled. Line: {}, where \
+         it has one job.",
         against(parts.layouts.all),
-        parts.layouts.all.by_words(),
+        parts.layouts.all.dimension(parts.layouts.all.by).label,
         parts.layouts.all.sources.first().map_or("", |first| first.name)
     );
     blocks.extend(figures(parts, Plot::Span, &span));

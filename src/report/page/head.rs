@@ -98,15 +98,32 @@ fn frequencies(rows: &[&JobRow]) -> Option<String> {
 /// The damping of the jobs, which μ\* depends on where the contact oscillates; none if they have several, or steady sliding alone.
 fn damping(rows: &[&JobRow]) -> Option<String> {
     let oscillates = |row: &&&JobRow| row.record().is_some_and(|record| record.outcome != Outcome::Decayed);
-    let own = |row: &&JobRow| Some((row.numerics.as_ref()?.beta_r_s, row.numerics.as_ref()?.beta2));
+    let own = |row: &&JobRow| {
+        let numerics = row.numerics.as_ref()?;
+        // The damping of β₂ depends on the time step, which is another one on each mesh.
+        let of_scheme_s = (numerics.beta2 - 0.5) * row.record()?.time_step_s;
+        Some((numerics.beta_r_s, of_scheme_s))
+    };
     let mut all = rows.iter().filter(oscillates).map(own);
     let first = all.next()??;
-    let (beta_r_s, beta2) = Some(first).filter(|_| all.all(|other| other == Some(first)))?;
-    let [own, of_scheme] = [beta_r_s, 2.0 * beta_r_s].map(|seconds| value::quantity(seconds, "s"));
-    // The damping of β₂ depends on the time step, which is another one on each mesh.
-    (beta2 == 0.5).then(|| match beta_r_s {
-        0.0 => "The pin has no damping.".to_owned(),
-        _ => format!("Damping: β_R = {own}, that of β₂ = 1 at Δt = {of_scheme}."),
+    let (beta_r_s, of_scheme_s) = Some(first).filter(|_| all.all(|other| other == Some(first)))?;
+    let seconds = |x: f64| value::quantity(x, "s");
+    Some(match (beta_r_s, of_scheme_s) {
+        (0.0, 0.0) => "The pin has no damping.".to_owned(),
+        (_, 0.0) => {
+            format!(
+                "Damping: β_R = {}, that of β₂ = 1 at Δt = {}.",
+                seconds(beta_r_s),
+                seconds(2.0 * beta_r_s)
+            )
+        }
+        (0.0, _) => format!("Damping: that of the time scheme, which is β_R = {}.", seconds(of_scheme_s)),
+        _ => format!(
+            "Damping: β_R = {} of the material and {} of the time scheme, {} in all.",
+            seconds(beta_r_s),
+            seconds(of_scheme_s),
+            seconds(beta_r_s + of_scheme_s)
+        ),
     })
 }
 

@@ -30,7 +30,7 @@ pub enum About {
 /// Something in a study that is allowed and yet doubtful. Displayed like a [`Problem`].
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Warning {
-    /// What is doubtful, in one word: `unit`, `size`, `friction`, `strain`, `speed`, `locking`, `damping`, `clamp`, `unused` or `repetition`.
+    /// What is doubtful, in one word: `unit`, `size`, `friction`, `strain`, `speed`, `locking`, `damping`, `two_dampings`, `clamp`, `unused` or `repetition`.
     pub kind: &'static str,
     /// Whether it is about the result or the cost.
     pub about: About,
@@ -145,9 +145,12 @@ impl Study {
         let mut found: Vec<Shared> = Vec::new();
         let all = self.specs.par_iter().enumerate().map(|(point, spec)| (point, of(spec)));
         for (point, doubts) in all.filter(|(_, doubts)| !doubts.is_empty()).collect::<Vec<_>>() {
-            // Edges of a block that nobody gives say nothing about a cylinder.
-            let is_meant = |doubt: &Doubt| {
-                doubt.kind != "size" || doubt.fields.iter().any(|field| self.has_value(field))
+            let is_meant = |doubt: &Doubt| match doubt.kind {
+                // Edges of a block that nobody gives say nothing about a cylinder.
+                "size" => doubt.fields.iter().any(|field| self.has_value(field)),
+                // Who gives both dampings themselves means their sum.
+                "two_dampings" => !self.has_value("numerics.beta_r_s"),
+                _ => true,
             };
             for doubt in doubts.into_iter().filter(is_meant) {
                 let same = |other: &&mut Shared| {

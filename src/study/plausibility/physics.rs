@@ -108,10 +108,31 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
             help: "a smaller β_R or a coarser mesh makes the run shorter".to_owned(),
         });
     }
+    found.extend(two_dampings(spec));
     found.extend(clamp(spec));
     found.extend(cylinder(spec));
     found.extend(friction(spec));
     found
+}
+
+/// The scheme's own damping, (β₂ − ½) Δt, beside that of the material.
+fn two_dampings(spec: &JobSpec) -> Option<Doubt> {
+    let numerics = &spec.numerics;
+    let excess = numerics.beta2 - 0.5;
+    let of_scheme =
+        numerics.time_step_s.map_or_else(String::new, |step_s| format!(" = {} s", short(excess * step_s)));
+    (excess > 0.0 && numerics.beta_r_s > 0.0).then(|| Doubt {
+        kind: "two_dampings",
+        fields: owned(&["numerics.beta2", "damping.beta2", "numerics.beta_r_s"]),
+        size: excess,
+        message: format!(
+            "the scheme's own damping (β₂ − ½) Δt{of_scheme} is added to that of the material, β_R = {} s",
+            short(numerics.beta_r_s)
+        ),
+        help: "set numerics.beta_r_s to 0 for the scheme's damping alone, or numerics.beta2 to 0.5 for that of the material \
+               alone"
+            .to_owned(),
+    })
 }
 
 fn mean_strain(spec: &JobSpec) -> f64 {

@@ -74,8 +74,16 @@ fn overdamped(spec: &JobSpec, found: &mut Vec<Doubt>) {
             "every vibration above {} Hz is damped more than critically, and so are all of this pin's",
             short(critical_hz)
         );
-        let fields = &["damping.frequency_hz", "damping.loss_factor", "damping.ratio", "numerics.beta_r_s"];
-        add(found, fields, ratio, message, "frequency_hz is in Hz (1 kHz is 1000 Hz), and ζ = π β_R f");
+        let fields = &[
+            "damping.at_time_step_s",
+            "damping.frequency_hz",
+            "damping.loss_factor",
+            "damping.ratio",
+            "numerics.beta_r_s",
+        ];
+        let help =
+            "time steps are in s (55 ns is 5.5e-8 s) and frequencies in Hz (1 kHz is 1000 Hz); ζ = π β_R f";
+        add(found, fields, ratio, message, help);
     }
 }
 

@@ -4,6 +4,7 @@ use super::refine;
 use crate::queue::{PlanState, PlanStatus, Queue};
 use crate::report::{BranchPoint, Endpoint, Findings, JobRow, RowState, basins};
 use crate::study::{Continue, DIRECTION, Direction, KICK, Study};
+use crate::sweep::database::readable_study;
 use crate::sweep::error::SweepError;
 use indexmap::IndexMap;
 use serde_json::Value;
@@ -19,10 +20,7 @@ pub async fn read_growth(
     rows: &[JobRow],
 ) -> Result<Option<Findings>, SweepError> {
     let Some(plan) = queue.plan_status(study).await? else { return Ok(None) };
-    let document = queue.study(study).await?.map(|found| found.document);
-    let Some(study) = document.and_then(|text| Study::parse_stored(&text, study).ok()) else {
-        return Ok(None);
-    };
+    let Some(study) = readable_study(queue, study).await? else { return Ok(None) };
     let mut found = Findings { waves: waves(rows), state: state(&study, &plan, rows), ..Findings::default() };
     let growth = study.growth();
     if let Some(settings) = &growth.refine {

@@ -28,7 +28,6 @@ impl Planner for GrowthPlanner {
 }
 
 fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
-    let study = Study::parse_stored(&claim.document, &claim.study)?;
     let rows: Vec<JobRow> =
         rows.par_iter().map(|row| report_row(&claim.study, row)).collect::<Result<_, _>>()?;
     // A wave is a function of all results: without one of them it would be another wave.
@@ -39,6 +38,8 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
         );
         return Ok(Planned::Failed { error });
     }
+    let beta_r_s = rows.first().and_then(|row| Some(row.numerics.as_ref()?.beta_r_s));
+    let study = Study::parse_stored(&claim.document, &claim.study, beta_r_s)?;
     let growth = study.growth();
     let added = |why: &str| Added { wave: claim.wave, why: why.to_owned() };
     // Results of two versions, or of two dampings, do not belong to one curve.

@@ -3,8 +3,7 @@
 use crate::queue::Queue;
 use crate::report::{JobRow, StabilityPoint};
 use crate::solver;
-use crate::study::Study;
-use crate::sweep::database::document;
+use crate::sweep::database::stored_study;
 use crate::sweep::error::SweepError;
 use crate::sweep::rows::for_each_row;
 use std::collections::HashSet;
@@ -19,7 +18,7 @@ pub fn name_of_modes(name: &str) -> String {
 /// # Errors
 /// If the database has no such study or cannot be read, or this version cannot read the study.
 pub async fn read_stability(queue: &mut Queue, study: &str) -> Result<Vec<StabilityPoint>, SweepError> {
-    let stored = Study::parse_stored(&document(queue, study).await?, study)?;
+    let stored = stored_study(queue, study).await?;
     let on_grid: HashSet<String> = stored.expand(solver::VERSION)?.into_iter().map(|job| job.key).collect();
     let mut points = Vec::new();
     for_each_row(queue, study, crate::queue::Rows::All, |_, row| {
