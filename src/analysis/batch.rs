@@ -60,9 +60,17 @@ impl Batch {
     pub fn sharing(spec: &JobSpec, structures: Structures) -> Result<Self, JobError> {
         spec.check()?;
         let model = Model::from_scene(&spec.scene, &spec.numerics)?;
+        let mut widest = Workload::of(&model, spec.numerics.precision).widest();
+        // Most jobs that ask for an accuracy spend most of their time on coarser meshes than the finest one.
+        if widest == 1
+            && spec.accuracy.is_some()
+            && let Some(coarser) = coarser(spec)
+        {
+            widest = Workload::estimate(&coarser)?.widest();
+        }
         Ok(Self {
             shared: spec.shared_part(),
-            widest: Workload::of(&model, spec.numerics.precision).widest(),
+            widest,
             lanes: one_lane(model, spec.numerics.precision),
             structures,
             coarser: None,

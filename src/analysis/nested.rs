@@ -84,10 +84,6 @@ pub fn coarser(spec: &JobSpec) -> Option<JobSpec> {
         coarse.numerics.safety_factor = Numerics::default().safety_factor;
     }
     coarse.run.stop_early = true;
-    // The coarser run of a job that asks for an accuracy may be its last one.
-    if spec.accuracy.is_none() {
-        coarse.stability = StabilityMethod::Simulate;
-    }
     let with = |elements| {
         let mut coarse = coarse.clone();
         coarse.scene.pin.elements = elements;
@@ -99,7 +95,12 @@ pub fn coarser(spec: &JobSpec) -> Option<JobSpec> {
     let best = found.iter().position(|(_, width_m)| is_same_width(*width_m, own_m));
     // Where the clamp is another one, a run can start from the motion, but its difference says nothing of the mesh.
     let best = best.or((spec.accuracy.is_none() && !found.is_empty()).then_some(0))?;
-    Some(found.swap_remove(best).0)
+    let mut coarse = found.swap_remove(best).0;
+    // The coarser run of a job that asks for an accuracy may be its last one. On the coarsest mesh it never is.
+    if spec.accuracy.is_none() || coarser(&coarse).is_none() {
+        coarse.stability = StabilityMethod::Simulate;
+    }
+    Some(coarse)
 }
 
 /// Whether two widths of the clamp are the same but for rounding.

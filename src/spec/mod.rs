@@ -146,8 +146,9 @@ impl JobSpec {
             return Vec::new();
         }
         let Some(own) = self.scene.pin.own_elements() else { return Vec::new() };
-        let shares = [(1, 2), (2, 3)].map(|(share, of)| own.map(|n| (share * n).div_ceil(of)));
-        shares.into_iter().filter(|coarse| coarse.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS)).collect()
+        let [half, two_thirds] = [(1, 2), (2, 3)].map(|(share, of)| own.map(|n| (share * n).div_ceil(of)));
+        let is_enough = half.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS);
+        if is_enough { vec![half, two_thirds] } else { Vec::new() }
     }
 
     /// Whether the run starts from the limit cycle of the coarser mesh, and not from rest.

@@ -38,7 +38,7 @@ fn any_parameter_can_be_an_axis() {
     let found = heads(&rows, &view(Some("young_modulus_pa"), Some("omega_rpm")));
     assert_eq!(found[1], "### μ = 0.3");
     assert_eq!(found[2], "| young_modulus [GPa] | ω = 2 rpm | ω = 7 rpm |");
-    assert!(found[4].starts_with("|                 0.5 |    0.171 |    0.186 |"), "{found:?}");
+    assert!(found[4].starts_with("|                 0.5 |     0.171 |     0.186 |"), "{found:?}");
     let found = heads(&rows, &view(Some("mu"), Some("young_modulus_pa")));
     assert_eq!(
         found[2],

@@ -95,10 +95,7 @@ fn studies_are_compared() {
     );
     assert!(page.contains("1 of the 3 jobs of a have no counterpart in b"), "{page}");
     let table = tables::markdown(&rows, Quantity::MuStar);
-    assert!(
-        table.contains("|      a |      b |") && table.contains("|     100 | 0.320 |      – |"),
-        "{table}"
-    );
+    assert!(table.contains("|     a |     b |") && table.contains("|     100 | 0.320 |     – |"), "{table}");
     let chart = only(&rows, Plot::MuStar);
     let texts = texts(&chart.legend);
     assert!(texts.contains(&"source") && texts.contains(&"a") && texts.contains(&"b"), "{texts:?}");

@@ -96,9 +96,9 @@ pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> JobRow {
 /// The row with a run on a mesh of half as many elements in each direction, which ended in the same regime with this μ\* and this frequency.
 pub fn after(mut row: JobRow, coarser_mu_star: f64, coarser_hz: f64) -> JobRow {
     if let RowState::Done(record) = &mut row.state {
-        record.elements = Some([12, 16, 10]);
+        record.elements = Some([24, 30, 20]);
         record.start = Some(CoarseStart {
-            elements: [6, 8, 5],
+            elements: [12, 15, 10],
             outcome: Some(record.outcome),
             only_compared: false,
             regime: Some(record.regime),

@@ -27,12 +27,12 @@ fn mu_star_of_a_partial_study() {
     let table = cells(&partial_study(), Quantity::MuStar);
     let expected = [
         ["ω [rpm]", "μ = 0.2", "μ = 0.3", "μ = 0.4"],
-        ["1", "0.200", "0.246", "–"],
-        ["2", "0.200", "0.252", "0.336"],
-        ["5", "0.200", "0.270", "0.360"],
-        ["10", "0.200", "0.270", "0.350~"],
-        ["50", "0.200", "failed", "–"],
-        ["100", "0.200", "0.285", "–"],
+        ["1", "0.2000", "0.246", "–"],
+        ["2", "0.2000", "0.252", "0.336"],
+        ["5", "0.2000", "0.270", "0.360"],
+        ["10", "0.2000", "0.270", "0.350~"],
+        ["50", "0.2000", "failed", "–"],
+        ["100", "0.2000", "0.285", "–"],
     ];
     assert_eq!(table, expected);
 }
@@ -42,9 +42,9 @@ fn mu_star_of_a_partial_study() {
 fn the_table_for_programs_has_the_same_cells() {
     let (names, lines) = table(&partial_study(), Quantity::MuStar);
     assert_eq!(names, ["omega_rpm", "mu=0.2", "mu=0.3", "mu=0.4"]);
-    assert_eq!(lines[0], [json!(1.0), json!("0.200"), json!("0.246"), Value::Null]);
-    assert_eq!(lines[3], [json!(10.0), json!("0.200"), json!("0.270"), json!("0.350~")]);
-    assert_eq!(lines[4], [json!(50.0), json!("0.200"), json!("failed"), Value::Null]);
+    assert_eq!(lines[0], [json!(1.0), json!("0.2000"), json!("0.2460"), Value::Null]);
+    assert_eq!(lines[3], [json!(10.0), json!("0.2000"), json!("0.2700"), json!("0.3500~")]);
+    assert_eq!(lines[4], [json!(50.0), json!("0.2000"), json!("failed"), Value::Null]);
     assert_eq!(lines.len(), 6);
 }
 
@@ -107,7 +107,7 @@ fn duplicates_share_a_cell() {
     let rows =
         [row(7.0, 0.4, periodic(0.35)), row(7.0, 0.4, periodic(0.36)), row(7.0, 0.4, RowState::Pending)];
     assert_eq!(cells(&rows, Quantity::MuStar)[1], ["7", "0.350 / 0.360 / –"]);
-    assert_eq!(table(&rows, Quantity::MuStar).1[0], [json!(7.0), json!("0.350 / 0.360 / –")]);
+    assert_eq!(table(&rows, Quantity::MuStar).1[0], [json!(7.0), json!("0.3500 / 0.3600 / –")]);
 }
 
 /// Protects: where μ is the same in all jobs, another parameter makes the columns, and every combination of the rest has
@@ -144,8 +144,8 @@ fn one_table_per_combination() {
     );
     let (names, lines) = table(&rows, Quantity::MuStar);
     assert_eq!(names, ["beta_r_s", "top", "omega_rpm", "clamp_side=inner_side", "clamp_side=outer_side"]);
-    assert_eq!(json!(lines[0]), json!([0.0, "free_in_z", 5.0, "0.200", "0.300"]));
-    assert_eq!(json!(lines[7]), json!([1e-7, "tied_in_z", 7.0, "0.210", "0.310"]));
+    assert_eq!(json!(lines[0]), json!([0.0, "free_in_z", 5.0, "0.2000", "0.3000"]));
+    assert_eq!(json!(lines[7]), json!([1e-7, "tied_in_z", 7.0, "0.2100", "0.3100"]));
 }
 
 /// Protects: in a study at one speed, the first parameter that varies is along the rows.

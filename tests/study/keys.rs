@@ -3,8 +3,8 @@
 use super::parse;
 use serde_json::{Value, json};
 use tribosweep::spec::{
-    Base, ClampSide, Contact, DiskKind, FrictionLaw, HeightMap, Holder, JobSpec, MeshFile, Precision, Region,
-    Roughness, Shape, StabilityMethod, Start,
+    Accuracy, Base, ClampSide, Contact, DiskKind, FrictionLaw, HeightMap, Holder, JobSpec, MeshFile,
+    Precision, Region, Roughness, Shape, StabilityMethod, Start,
 };
 use tribosweep::study::{PARAMETERS, job_key};
 
@@ -104,6 +104,7 @@ pub fn full() -> JobSpec {
         inertia_y_kg_m2: Some(9.0),
     };
     spec.run.window_s = Some(0.001);
+    spec.accuracy = Some(Accuracy { mu_star: 0.01 });
     spec
 }
 
