@@ -5,7 +5,8 @@ use std::sync::{Arc, LazyLock};
 use tribosweep_mechanics::analysis::{JobRecord, Outcome, Regime};
 use tribosweep_output::publish::{Drawing, Sheet, SheetGroup, SheetLine};
 use tribosweep_output::report::{
-    Discretisation, JobRow, MeasuredValue, Measurement, MeshError, Parameters, Report, RowState, View,
+    Discretisation, JobNumerics, JobRow, MeasuredValue, Measurement, MeshError, Parameters, Report, RowState,
+    View,
 };
 
 /// The usual axes.
@@ -125,4 +126,25 @@ pub fn partial_study() -> Vec<JobRow> {
         }
     }
     rows
+}
+
+/// A cube of n × n × n elements of 1/n mm; the step is in proportion.
+pub fn numerics(n: usize, safety_factor: f64) -> JobNumerics {
+    JobNumerics {
+        case: "one".to_owned(),
+        elements: [n, n, n],
+        element_size_m: 1.0e-3 / n as f64,
+        nodes: (n as u64 + 1).pow(3),
+        beta2: 0.5,
+        beta_r_s: 5.0e-8,
+        safety_factor: Some(safety_factor),
+        limit_s: 0.01,
+        stop_early: false,
+        average_last_fraction: 0.4,
+        cycles: 20,
+        tolerance: 0.01,
+        drift_tolerance: 0.001,
+        precision: "double".into(),
+        start: "rest".into(),
+    }
 }
