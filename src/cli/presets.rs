@@ -4,6 +4,7 @@ use super::error::CliError;
 use super::output::print;
 use crate::exit;
 use crate::publish::table::{Column, Table, listed};
+use crate::publish::value;
 use crate::spec::{JobSpec, Scene};
 use crate::study::{Evidence, Preset, PresetEvidence};
 use serde_json::{Value, json};
@@ -82,7 +83,7 @@ fn as_text(evidence: &Evidence) -> String {
          elements: along the pin's shortest edge; the other directions get elements of about the same size, and as\n\
          many more as the clamp needs to end at a node row. safety: time step as a fraction of the stability limit.\n\
          tolerance, drift: of the periodic state. cost: nodes × steps, standard = 1.\n\n\
-         Errors: the largest at {} rpm, μ = {}, {}.\n\
+         Errors: the largest at {} rpm, μ = {}, β_R = {}, {}.\n\
          Of μ*: from the limit of fine meshes, which is known to ± {:.1} % from\n\
          {}.\n\
          Of f and shares: from {nx} × {ny} × {nz} elements with a safety factor of {}.\n\
@@ -91,6 +92,7 @@ fn as_text(evidence: &Evidence) -> String {
         ways,
         speeds.join(", "),
         evidence.mu,
+        value::quantity(evidence.beta_r_s, "s"),
         evidence.scene,
         100.0 * reference.mu_star_uncertainty,
         reference.mu_star_source,

@@ -73,15 +73,15 @@ pub(crate) fn check(
 
 /// Says how a study changes. If its jobs stay the same, there is nothing to say.
 fn log_changes(plan: &Plan, replaced: &Replaced) {
-    let Replaced { document, kept, new, dropped, dropped_done, cancelled } = replaced;
+    let Replaced { kept, new, dropped, dropped_done, cancelled, .. } = replaced;
     if new + dropped == 0 {
         return;
     }
     log(format_args!("{}: the database has a study of this name; what changes:", plan.name()));
-    match plan.difference_from(document) {
+    match plan.difference_from(replaced) {
         Ok(difference) if difference.inputs.is_empty() => {
             log(
-                "  no input takes other values: the combinations, the way in which the study grows, the shard or the version of the program differ, or a default has changed since (the damping was 50 ns where a study gives none)",
+                "  no input takes other values: the combinations, the way in which the study grows, the shard or the version of the program differ",
             );
         }
         Ok(difference) => difference.inputs.iter().for_each(|input| log(format!("  {}", input.in_words()))),

@@ -3,9 +3,8 @@ use std::collections::HashSet;
 use super::engine::query;
 use super::error::QueueError;
 use super::handle::Queue;
-use super::lookup;
 use super::plan_rows;
-use super::replace::Replaced;
+use super::replace::{OLD, OldColumns, Replaced};
 use super::state::JobState;
 
 /// The jobs of a study: key, state, and 1 if no other study has the job.
@@ -28,12 +27,19 @@ impl Queue {
         keys: &HashSet<&str>,
         document: &str,
     ) -> Result<Option<Replaced>, QueueError> {
-        let Some(old) = self.study(name).await? else { return Ok(None) };
-        let study_id = lookup::require(&mut self.connection, name).await?;
+        let old: Option<OldColumns> = query(OLD).bind(name).optional(&mut self.connection).await?;
+        let Some((study_id, old_document, _, parameters)) = old else { return Ok(None) };
         let jobs: Vec<(String, String, i64)> =
             query(OLD_JOBS).bind(study_id).all(&mut self.connection).await?;
-        let mut replaced =
-            Replaced { document: old.document, kept: 0, new: 0, dropped: 0, dropped_done: 0, cancelled: 0 };
+        let mut replaced = Replaced {
+            document: old_document,
+            parameters,
+            kept: 0,
+            new: 0,
+            dropped: 0,
+            dropped_done: 0,
+            cancelled: 0,
+        };
         // A study that grows keeps its waves if it is submitted as it is.
         let keeps_waves =
             replaced.document == document && plan_rows::read(&mut self.connection, study_id).await?.is_some();

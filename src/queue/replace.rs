@@ -26,12 +26,24 @@ impl Replace {
     }
 }
 
+/// The study that has the name: [`OldColumns`].
+pub(super) const OLD: &str = "
+    SELECT s.id, s.document, (SELECT COUNT(DISTINCT m.job_id) FROM study_jobs AS m WHERE m.study_id = s.id),
+           (SELECT m.parameters FROM study_jobs AS m WHERE m.study_id = s.id ORDER BY m.ordinal LIMIT 1)
+    FROM studies AS s WHERE s.name = $1";
+
+/// Number, document, number of jobs, and the parameters of the first row.
+pub(super) type OldColumns = (i64, String, i64, Option<String>);
+
 /// A study that is replaced by another one of its name, or would be. A job that several rows point to counts once.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Replaced {
     /// The document of the old study.
     #[serde(skip)]
     pub document: String,
+    /// The parameters of its first row, if it has one.
+    #[serde(skip)]
+    pub parameters: Option<String>,
     /// Jobs that both studies have.
     pub kept: u64,
     /// Jobs that only the new study has.

@@ -6,7 +6,7 @@ use super::engine::{Connection, Statement, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::plan_rows;
-use super::replace::{Replace, Replaced};
+use super::replace::{OLD, OldColumns, Replace, Replaced};
 
 /// A study to be submitted.
 #[derive(Debug, Clone, PartialEq)]
@@ -161,11 +161,6 @@ const CANCEL_UNREQUESTED: &str = "
 
 const NOTE: &str = "cancelled: its study was replaced by one without it";
 
-/// The study that has the name: number, document and number of jobs.
-const OLD: &str = "
-    SELECT s.id, s.document, (SELECT COUNT(DISTINCT m.job_id) FROM study_jobs AS m WHERE m.study_id = s.id)
-    FROM studies AS s WHERE s.name = $1";
-
 /// Deletes rows beyond the end of the new document, and rows of other shards.
 const DELETE_SURPLUS: &str = "
     DELETE FROM study_jobs WHERE study_id = $1 AND (ordinal >= $2 OR ordinal % $3 <> $4) RETURNING job_id";
@@ -260,8 +255,7 @@ impl Queue {
         let jobs = rows.iter().map(|(_, job)| &job.key).collect::<HashSet<_>>().len() as u64;
         let (replaced, added, counts) = self
             .write(async |connection, now_ms| {
-                let old: Option<(i64, String, i64)> =
-                    query(OLD).bind(&study.name).optional(connection).await?;
+                let old: Option<OldColumns> = query(OLD).bind(&study.name).optional(connection).await?;
                 let study_id: i64 = query(UPSERT_STUDY)
                     .bind(&study.name)
                     .bind(&study.document)
@@ -269,7 +263,7 @@ impl Queue {
                     .scalar(connection)
                     .await?;
                 let is_same_document =
-                    old.as_ref().is_some_and(|(_, document, _)| *document == study.document);
+                    old.as_ref().is_some_and(|(_, document, ..)| *document == study.document);
                 let keeps_waves = study.grows
                     && is_same_document
                     && plan_rows::read(connection, study_id).await?.is_some()
@@ -308,12 +302,13 @@ impl Queue {
                 let added = count_jobs(connection).await? - before;
                 query(UNDO_CANCELLATION).bind(study_id).run(connection).await?;
                 let mut replaced = None;
-                if let Some((_, document, old_jobs)) = old {
+                if let Some((_, document, old_jobs, parameters)) = old {
                     let (dropped, dropped_done) = count_dropped(connection, study_id, deleted).await?;
                     let cancelled = query(CANCEL_UNREQUESTED).bind(NOTE).run(connection).await?;
                     let kept = old_jobs.unsigned_abs() - dropped;
                     let old = Replaced {
                         document,
+                        parameters,
                         kept,
                         new: jobs.saturating_sub(kept),
                         dropped,

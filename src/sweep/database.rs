@@ -121,8 +121,8 @@ pub(super) async fn stored_study(queue: &mut Queue, study: &str) -> Result<Study
     let document = document(queue, study).await?;
     let mut parameters = queue.pages_of_parameters(study).await?;
     let first = queue.next_page(&mut parameters).await?.and_then(|page| page.into_iter().next());
-    let stored = first.and_then(|text| serde_json::from_str::<StoredParameters>(&text).ok());
-    Ok(Study::parse_stored(&document, study, stored.map(|own| own.numerics.beta_r_s))?)
+    let beta_r_s = first.as_deref().and_then(StoredParameters::beta_r_s);
+    Ok(Study::parse_stored(&document, study, beta_r_s)?)
 }
 
 /// As [`stored_study`]; none if the database has no such study, or if this version cannot read it.

@@ -133,12 +133,13 @@ impl Plan {
         self.workload_of.iter().map(|&number| &self.workloads[number])
     }
 
-    /// How this study differs from the one of the same name with that document, which is the first one of the comparison.
+    /// How this study differs from the one of the same name that it replaces, which is the first one of the comparison.
     ///
     /// # Errors
-    /// If this version cannot read the document.
-    pub fn difference_from(&self, document: &str) -> Result<Difference, SweepError> {
-        let old = Study::parse_stored(document, self.name(), None)?.expand(solver::VERSION)?;
+    /// If this version cannot read the old study.
+    pub fn difference_from(&self, replaced: &Replaced) -> Result<Difference, SweepError> {
+        let beta_r_s = replaced.parameters.as_deref().and_then(StoredParameters::beta_r_s);
+        let old = Study::parse_stored(&replaced.document, self.name(), beta_r_s)?.expand(solver::VERSION)?;
         Ok(Difference::between(&old, &self.jobs))
     }
 

@@ -36,6 +36,11 @@ impl StoredParameters {
         serde_json::from_str(text).map_err(unreadable)
     }
 
+    /// β_R \[s\] of a row, if this version can read its parameters.
+    pub fn beta_r_s(text: &str) -> Option<f64> {
+        serde_json::from_str::<Self>(text).ok().map(|own| own.numerics.beta_r_s)
+    }
+
     /// As they are everywhere but in the database.
     pub fn into_parameters(self) -> Parameters {
         Parameters::new(self.omega_rpm, self.mu, self.grid)

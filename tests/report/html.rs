@@ -1,10 +1,12 @@
 //! The page for a browser: its contents, what it leaves out, and that texts of a study are never markup.
 
 use crate::charts::drawings;
-use crate::synthetic::{after, failed, partial_study, periodic, report, row, with};
+use crate::synthetic::{after, failed, numerics, partial_study, periodic, report, row, with};
 use std::fs;
 use tribosweep_mechanics::analysis::{Build, Regime};
-use tribosweep_output::report::{JobRow, Provenance, Report, ResultGroup, RowState, inspections, write};
+use tribosweep_output::report::{
+    JobNumerics, JobRow, Provenance, Report, ResultGroup, RowState, inspections, write,
+};
 
 fn page_of(report: &Report) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -267,6 +269,29 @@ fn the_first_sentence_claims_no_error_that_is_not_known() {
     assert!(known.contains("0.263 ±"), "{known}");
     let unknown = sentence(job());
     assert!(unknown.contains("to 0.263") && !unknown.contains('±'), "{unknown}");
+}
+
+/// Protects: the head names the damping of the material, that of the time scheme, or both and their sum; jobs of several dampings have no
+/// such sentence.
+#[test]
+fn the_damping_is_named_with_all_its_parts() {
+    let job = |beta2: f64, beta_r_s: f64| {
+        let RowState::Done(mut record) = periodic(0.3) else { panic!("a result") };
+        record.time_step_s = 1.0e-7;
+        let numerics = Some(JobNumerics { beta2, beta_r_s, ..numerics(4, 0.7) });
+        JobRow { numerics, ..row(7.0, 0.4, RowState::Done(record)) }
+    };
+    for (beta2, beta_r_s, sentence) in [
+        (0.5, 2.75e-8, "Damping: β_R = 27.5 ns, that of β₂ = 1 at Δt = 55 ns."),
+        (1.0, 0.0, "Damping: that of the time scheme, which is β_R = 50 ns."),
+        (1.0, 2.0e-8, "Damping: β_R = 20 ns of the material and 50 ns of the time scheme, 70 ns in all."),
+        (0.5, 0.0, "The pin has no damping."),
+    ] {
+        let text = text(&page(&[job(beta2, beta_r_s)]));
+        assert!(text.contains(sentence), "{sentence}: {text}");
+    }
+    let text = text(&page(&[job(0.5, 2.0e-8), job(1.0, 2.0e-8)]));
+    assert!(!text.contains("Damping:"), "{text}");
 }
 
 /// Protects: the largest error of the mesh is in the head, and tables do not promise digits that it does not leave. The CSV keeps them.

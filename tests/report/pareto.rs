@@ -2,7 +2,7 @@
 
 use crate::charts::{points, texts};
 use crate::random::Random;
-use crate::synthetic::{failed, parameters, record, row, with};
+use crate::synthetic::{failed, numerics, parameters, record, row, with};
 use std::fs;
 use tribosweep_mechanics::analysis::{Outcome, Regime};
 use tribosweep_output::report::pareto::refinement::{Level, Unclean, limit, observed_order};
@@ -18,27 +18,6 @@ fn is_numerics(name: &str) -> bool {
 
 fn compare(rows: &[JobRow]) -> Result<Comparison<'_>, ParetoError> {
     pareto::compare(rows, is_numerics)
-}
-
-/// A cube of n × n × n elements of 1/n mm; the step is in proportion.
-fn numerics(n: usize, safety_factor: f64) -> JobNumerics {
-    JobNumerics {
-        case: "one".to_owned(),
-        elements: [n, n, n],
-        element_size_m: 1.0e-3 / n as f64,
-        nodes: (n as u64 + 1).pow(3),
-        beta2: 0.5,
-        beta_r_s: 5.0e-8,
-        safety_factor: Some(safety_factor),
-        limit_s: 0.01,
-        stop_early: false,
-        average_last_fraction: 0.4,
-        cycles: 20,
-        tolerance: 0.01,
-        drift_tolerance: 0.001,
-        precision: "double".into(),
-        start: "rest".into(),
-    }
 }
 
 /// A finished job; its time step follows from mesh and safety factor.

@@ -4,7 +4,9 @@ use serde_json::Value;
 use std::sync::LazyLock;
 use tribosweep_mechanics::analysis::{CoarseStart, JobRecord, Outcome, Regime};
 use tribosweep_output::publish::{Drawing, Sheet, SheetGroup, SheetLine};
-use tribosweep_output::report::{JobRow, MeasuredValue, Measurement, Parameters, Report, RowState, View};
+use tribosweep_output::report::{
+    JobNumerics, JobRow, MeasuredValue, Measurement, Parameters, Report, RowState, View,
+};
 
 /// The usual axes.
 pub static VIEW: LazyLock<View> = LazyLock::new(View::default);
@@ -139,4 +141,25 @@ pub fn partial_study() -> Vec<JobRow> {
         }
     }
     rows
+}
+
+/// A cube of n × n × n elements of 1/n mm; the step is in proportion.
+pub fn numerics(n: usize, safety_factor: f64) -> JobNumerics {
+    JobNumerics {
+        case: "one".to_owned(),
+        elements: [n, n, n],
+        element_size_m: 1.0e-3 / n as f64,
+        nodes: (n as u64 + 1).pow(3),
+        beta2: 0.5,
+        beta_r_s: 5.0e-8,
+        safety_factor: Some(safety_factor),
+        limit_s: 0.01,
+        stop_early: false,
+        average_last_fraction: 0.4,
+        cycles: 20,
+        tolerance: 0.01,
+        drift_tolerance: 0.001,
+        precision: "double".into(),
+        start: "rest".into(),
+    }
 }

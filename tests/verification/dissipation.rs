@@ -85,10 +85,11 @@ fn limit_cycles_have_the_same_friction() {
                 difference < remains,
                 "{elements:?}, {omega_rpm} rpm, {time_step_s} s: {difference}, and {remains} may remain"
             );
-            // At 35 rpm μ* hardly depends on the damping.
-            if omega_rpm < 35.0 {
+            // At 35 rpm μ* hardly depends on the damping on the finer mesh.
+            if elements == [6, 8, 5] || omega_rpm < 35.0 {
                 let (less, _) = cycle(elements, omega_rpm, 0.5, 0.2 * beta_r_s, time_step_s);
                 let gain = of_material.0 - less;
+                assert!(difference < 0.1 * gain, "{elements:?}, {omega_rpm} rpm: {difference} of {gain}");
                 assert!(gain > remains, "{elements:?}, {omega_rpm} rpm: {gain}, and {remains} may remain");
             }
             assert!((of_scheme.1 / of_material.1 - 1.0).abs() < 1e-3, "{of_scheme:?}, {of_material:?}");

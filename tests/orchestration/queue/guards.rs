@@ -44,6 +44,7 @@ async fn results_stay_in_view(sandbox: &Sandbox) {
     let QueueError::ResultsWouldBeDropped { name, replaced: refused } = error else { panic!("{error}") };
     let expected = Replaced {
         document: "document of a".into(),
+        parameters: Some("parameters of x".into()),
         kept: 1,
         new: 1,
         dropped: 3,

@@ -36,6 +36,7 @@ async fn submitting_twice_adds_nothing(sandbox: &Sandbox) {
     let expected = Submitted {
         replaced: Some(Replaced {
             document: "document of a".into(),
+            parameters: Some("parameters of x".into()),
             kept: 3,
             new: 0,
             dropped: 0,
