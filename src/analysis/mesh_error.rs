@@ -80,7 +80,7 @@ impl Bound {
 }
 
 /// `scripts/mesh_errors.py` checks these numbers, and its page shows what they cover.
-const MU_STAR: Bound = Bound { share: 0.02 };
+const MU_STAR: Bound = Bound { share: 0.023 };
 const FREQUENCY: Bound = Bound { share: 0.004 };
 
 /// Error of μ\* of steady sliding, relative to μ\*. It depends on the mesh only by where along the curved track the pressure is.

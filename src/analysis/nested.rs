@@ -16,6 +16,8 @@ pub(super) fn cost(own: [usize; 3], coarser: [usize; 3]) -> f64 {
 }
 
 /// How the run on a coarser mesh ended that came before the job's own.
+///
+/// No field is skipped where it is none: a checkpoint has the fields in their order and not by their names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CoarseStart {
     /// Elements of the coarser mesh in x, y and z.
@@ -23,22 +25,22 @@ pub struct CoarseStart {
     /// How its run ended; none if it failed.
     pub outcome: Option<Outcome>,
     /// Whether the job started from rest in any case, because a motion on another mesh is not enough for it.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default)]
     pub only_compared: bool,
     /// Simulated time \[s\] of that run, which is not part of the job's simulated time.
     pub simulated_s: f64,
     /// The contact regime there; none if the run failed, and in records of earlier versions.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub regime: Option<Regime>,
     /// Whether the clamp on that mesh is as wide as on the job's own. Earlier versions did not keep it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub same_clamp: Option<bool>,
     /// Macroscopic friction coefficient μ* on the coarser mesh.
     pub mu_star: Option<f64>,
     /// Fundamental frequency \[Hz\] on the coarser mesh.
     pub frequency_hz: Option<f64>,
     /// The run on a still coarser mesh that came before, if there was one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub start: Option<Box<CoarseStart>>,
 }
 

@@ -4,7 +4,6 @@ use super::error::CliError;
 use super::output::print;
 use crate::exit;
 use crate::publish::table::{Column, Table, listed};
-use crate::publish::value;
 use crate::spec::{JobSpec, Scene};
 use crate::study::{Evidence, Preset, PresetEvidence};
 use serde_json::{Value, json};
@@ -41,13 +40,14 @@ fn settings(preset: Preset) -> Value {
         "safety_factor": preset.safety_factor(),
         "tolerance": preset.tolerance(),
         "drift_tolerance": preset.drift_tolerance(),
+        "accuracy": preset.accuracy(),
         "precision": job.numerics.precision,
         "start": job.run.start,
         "stability": job.stability,
     })
 }
 
-/// A preset with what was measured of it. A test ensures that every shipped preset has evidence.
+/// A preset with what was measured of it; none if it asks for an accuracy.
 type Measured<'a> = (Preset, Option<&'a PresetEvidence>);
 
 fn columns<'a>() -> [Column<Measured<'a>>; 9] {
@@ -57,48 +57,38 @@ fn columns<'a>() -> [Column<Measured<'a>>; 9] {
         Column::new("safety", "", "", |(preset, _)| preset.safety_factor().into()),
         Column::new("tolerance", "", "", |(preset, _)| preset.tolerance().into()),
         Column::new("drift", "", "", |(preset, _)| preset.drift_tolerance().into()),
-        Column::new("error of μ*", "", "", |(_, of)| of.map(|of| percent(of.mu_star_error)).into()),
-        Column::new("error of f", "", "", |(_, of)| of.map(|of| percent(of.frequency_error)).into()),
-        Column::new("error of shares", "", "", |(_, of)| {
-            of.map(|of| format!("{:.3}", of.shares_error)).into()
+        Column::new("asked of μ*", "", "", |(preset, _)| {
+            preset.accuracy().map(|asked| share(asked.mu_star)).into()
+        }),
+        Column::new("error of μ*", "", "", |(_, of)| {
+            of.map(|of| format!("{}, {}", share(of.mu_star_median), share(of.mu_star_95))).into()
+        }),
+        Column::new("error of f", "", "", |(_, of)| {
+            of.map(|of| format!("{}, {}", share(of.frequency_median), share(of.frequency_95))).into()
         }),
         Column::new("cost", "", "", |(_, of)| of.map(|of| format!("{:.2}", of.relative_cost)).into()),
     ]
 }
 
-fn percent(share: f64) -> String {
+fn share(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }
 
 fn as_text(evidence: &Evidence) -> String {
     let measured = Preset::ALL.map(|preset| (preset, evidence.of(preset)));
     let mut text = Table::of("presets", &columns(), &measured).text();
-    let reference = &evidence.reference;
-    let [nx, ny, nz] = reference.elements;
-    let speeds: Vec<String> = reference.cases.iter().map(|case| case.omega_rpm.to_string()).collect();
     let ways = listed(0, &Preset::ALL.map(way), None);
     let _ = write!(
         text,
         "\nOn a rigid disk with damping, jobs are solved so (no preset: precision double, start rest, stability simulate):\n{}\n\
          elements: along the pin's shortest edge; the other directions get elements of about the same size, and as\n\
          many more as the clamp needs to end at a node row. safety: time step as a fraction of the stability limit.\n\
-         tolerance, drift: of the periodic state. cost: nodes × steps, standard = 1.\n\n\
-         Errors: the largest at {} rpm, μ = {}, β_R = {}, {}.\n\
-         Of μ*: from the limit of fine meshes, which is known to ± {:.1} % from\n\
-         {}.\n\
-         Of f and shares: from {nx} × {ny} × {nz} elements with a safety factor of {}.\n\
-         Other scenes have other errors: compare two presets there.\n\
-         Written by {} with solver version {}.\n",
-        ways,
-        speeds.join(", "),
-        evidence.mu,
-        value::quantity(evidence.beta_r_s, "s"),
-        evidence.scene,
-        100.0 * reference.mu_star_uncertainty,
-        reference.mu_star_source,
-        reference.safety_factor,
-        evidence.written_by,
-        evidence.solver_version,
+         tolerance, drift: of the periodic state. asked: the job goes from mesh to mesh, up to that of the table, until its\n\
+         own error of μ* is within this share. cost: nodes × steps, standard = 1.\n\n\
+         Errors: the median, and what 95 % of limit cycles are within, against the limit of fine meshes in {} scenes\n\
+         (docs/mesh_errors.md). They are not bounds for your scene: each result has its own, as mu_star_mesh_error.\n\
+         Written by {}.\n",
+        ways, evidence.scenes, evidence.written_by,
     );
     text
 }

@@ -74,7 +74,7 @@ pub use name::{is_study_name, refused_name, renamed};
 pub use origin::{Origin, is_set_by_presets};
 pub use parameter::{PARAMETERS, Parameter, is_numerics};
 pub use plausibility::{About, Warning, job_warnings};
-pub use preset::{CaseEvidence, Evidence, Preset, PresetEvidence, ReferenceEvidence};
+pub use preset::{Evidence, Preset, PresetEvidence};
 pub use printable::{printable, printable_lines};
 pub use range::Spacing;
 pub use report_axes::ReportAxes;

@@ -7,8 +7,8 @@ use tribosweep_mechanics::analysis::batch::{Batch, Begun};
 use tribosweep_mechanics::analysis::continuation::PinMotion;
 use tribosweep_mechanics::analysis::{CoarseStart, JobRecord, Outcome, Unobserved, solve};
 use tribosweep_mechanics::spec::{
-    ClampSide, Continuation, DiskKind, FrictionLaw, JobSpec, Precision, Region, Shape, StabilityMethod,
-    Start, Table,
+    Accuracy, ClampSide, Continuation, DiskKind, FrictionLaw, JobSpec, Precision, Region, Shape,
+    StabilityMethod, Start, Table,
 };
 
 /// Jobs of one model. They differ in everything that may differ: friction, speed, load, ramp, length, and
@@ -206,6 +206,38 @@ fn companions_change_nothing_where_eigenvalues_decide() {
     assert!(records.iter().any(|record| is_decided(record) && is_used(record) == Some(false)));
     for record in records.iter().filter(|record| is_used(record) == Some(true)) {
         assert_eq!(record.stability, None);
+    }
+}
+
+/// Jobs that ask for an accuracy, of which some end on a coarser mesh than their finest one. Their detection is as tolerant as that of
+/// [`nested_jobs`].
+fn accurate_jobs(precision: Precision) -> Vec<JobSpec> {
+    let mut jobs = nested_jobs(precision);
+    for (i, job) in jobs.iter_mut().enumerate() {
+        job.scene.pin.elements = [24, 24, 24];
+        job.run.start = if i % 4 == 1 { Start::Rest } else { Start::Nested };
+        job.run.limit_s = 0.0012 + 1.0e-4 * i as f64;
+        job.numerics.beta2 = 0.5;
+        job.accuracy = Some(Accuracy { mu_star: [0.9, 1.0e-6][i % 2] });
+    }
+    jobs
+}
+
+/// Protects: a job that asks for an accuracy has the same bytes alone and beside others that end on other meshes, and after interruptions
+/// on each of its meshes.
+#[test]
+fn companions_and_interruptions_change_nothing_where_an_accuracy_is_asked() {
+    for precision in [Precision::Double, Precision::Single] {
+        let jobs = accurate_jobs(precision);
+        let records: Vec<_> = jobs.iter().map(|job| solve(job, &mut Unobserved).unwrap()).collect();
+        for (elements, reached) in [([12; 3], true), ([24; 3], false)] {
+            let is_such = |record: &&JobRecord| {
+                (record.elements, record.accuracy_reached) == (Some(elements), Some(reached))
+            };
+            assert!(records.iter().any(|record| is_such(&record)), "{elements:?}, reached: {reached}");
+        }
+        companions_change_nothing_in(&jobs);
+        resumed_jobs_have_the_same_bits(&jobs, &[0, 3]);
     }
 }
 

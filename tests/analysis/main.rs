@@ -8,6 +8,7 @@ mod frequency;
 mod holder;
 mod identities;
 mod interruption;
+mod mesh_error;
 mod nested;
 mod on_elastic_disk;
 #[path = "../support/random.rs"]

@@ -1,8 +1,8 @@
 //! Runs that start from a limit cycle of a coarser mesh.
 
 use tribosweep_mechanics::analysis::nested::coarser;
-use tribosweep_mechanics::analysis::{JobRecord, Outcome, Unobserved, solve};
-use tribosweep_mechanics::spec::{JobSpec, Numerics, Start};
+use tribosweep_mechanics::analysis::{JobRecord, Outcome, UnknownError, Unobserved, solve};
+use tribosweep_mechanics::spec::{Accuracy, JobSpec, Numerics, Start};
 
 /// A scene that can be halved once.
 fn scene() -> JobSpec {
@@ -76,6 +76,46 @@ fn a_nested_start_leads_to_the_same_limit_cycle() {
     assert!((a / b - 1.0).abs() <= tolerance, "{a} Hz and {b} Hz");
     assert!(nested.simulated_s < rest.simulated_s, "{} s and {} s", nested.simulated_s, rest.simulated_s);
     assert!(nested.energy_residual < 0.01, "{}", nested.energy_residual);
+}
+
+fn asks(elements: [usize; 3], mu_star: f64) -> JobSpec {
+    let mut spec = scene();
+    spec.scene.contact.mu = 0.4;
+    spec.scene.disk.omega_rpm = 20.0;
+    spec.scene.pin.elements = elements;
+    spec.accuracy = Some(Accuracy { mu_star });
+    spec
+}
+
+/// Protects: a job that asks for an accuracy ends on the first mesh whose own error is within it, never on the coarsest one, and has the
+/// result of a job on this mesh. Otherwise it ends on the finest mesh and says that the accuracy is not reached.
+#[test]
+fn an_accuracy_ends_on_the_first_mesh_that_has_it() {
+    let fixed = |elements: [usize; 3]| run(&JobSpec { accuracy: None, ..asks(elements, 1.0) });
+    let middle = fixed([12; 3]);
+    let error = middle.mesh_error().unwrap().mu_star / middle.mu_star;
+    for (factor, elements, reached) in [(1.001, [12; 3], true), (0.999, [24; 3], false)] {
+        let record = run(&asks([24; 3], factor * error));
+        assert_eq!((record.elements, record.accuracy_reached), (Some(elements), Some(reached)), "{factor}");
+        assert_eq!(JobRecord { accuracy_reached: None, ..record }, fixed(elements), "{factor}");
+    }
+    // One mesh alone says nothing of its error, however much is allowed.
+    let coarsest = run(&asks([6; 3], 10.0));
+    assert_eq!((coarsest.elements, coarsest.accuracy_reached), (Some([6; 3]), Some(false)));
+    assert_eq!(coarsest.mesh_error(), Err(UnknownError::NoCoarserMesh));
+}
+
+/// Protects: a mesh that does not halve to one with the clamp's row starts from two thirds of its elements, and a job that asks for an
+/// accuracy never compares two widths of the clamp.
+#[test]
+fn every_mesh_has_the_row_of_the_clamp() {
+    let mut spec = asks([36, 36, 36], 0.01);
+    spec.scene.clamp.width_m = 0.001;
+    let counts = |spec: &JobSpec| coarser(spec).map(|coarse| coarse.scene.pin.elements);
+    assert_eq!(counts(&spec), Some([24; 3]), "18 elements of 12 mm have no row at 1 mm");
+    let next = coarser(&spec).unwrap();
+    assert_eq!(counts(&next), Some([12; 3]));
+    assert_eq!(counts(&coarser(&next).unwrap()), None, "6 elements have no row at 1 mm");
 }
 
 /// Protects: without a limit cycle on the coarser mesh a job starts from rest, and apart from the note about that its record has

@@ -13,8 +13,8 @@ use tempfile::TempDir;
 pub const TRIBOSWEEP: &str = env!("CARGO_BIN_EXE_tribosweep");
 
 /// The header of the export, which other programs rely on.
-pub const HEADER: &str = "study,job,omega_rpm,mu,status,regime,mu_star,mu_star_se,mu_star_contact,frequency_hz,\
-stick_share,slip_share,separated_share,n_over_f_min,n_over_f_max,sigma_n_max_pa,slip_speed_max_m_s,cycles,\
+pub const HEADER: &str = "study,job,omega_rpm,mu,status,regime,mu_star,mu_star_se,mu_star_mesh_error,\
+mu_star_contact,frequency_hz,frequency_mesh_error_hz,stick_share,slip_share,separated_share,n_over_f_min,n_over_f_max,sigma_n_max_pa,slip_speed_max_m_s,cycles,\
 simulated_s,steps,time_step_s,energy_residual,identity_residual,wall_s,error";
 
 /// A process that takes longer hangs.

@@ -52,8 +52,9 @@ fn the_table_agrees_with_the_export() {
         assert!(mu_star < mu && mu_star > 0.5 * mu, "{row:?}");
         let line = table.lines().find(|line| line.split('|').nth(1).unwrap_or("").trim() == row["omega_rpm"]);
         let column = if row["mu"] == "0.2" { 2 } else { 3 };
-        // Nobody has measured the error of this mesh, so the table has three decimals.
-        assert_eq!(line.unwrap().split('|').nth(column).unwrap().trim(), format!("{mu_star:.3}"));
+        // The error of limit cycles on this mesh is unknown, so they have three decimals. That of steady sliding is known.
+        let digits = if row["mu_star_mesh_error"].is_empty() { 3 } else { 4 };
+        assert_eq!(line.unwrap().split('|').nth(column).unwrap().trim(), format!("{mu_star:.digits$}"));
     }
 }
 

@@ -3,5 +3,5 @@
 mod evidence;
 mod settings;
 
-pub use evidence::{CaseEvidence, Evidence, PresetEvidence, ReferenceEvidence};
+pub use evidence::{Evidence, PresetEvidence};
 pub use settings::Preset;

@@ -1,6 +1,8 @@
 //! The presets and the settings that they stand for.
 
-use crate::spec::{Clamp, DiskKind, FEWEST_ACROSS, JobSpec, Pin, Precision, Shape, StabilityMethod, Start};
+use crate::spec::{
+    Accuracy, Clamp, DiskKind, FEWEST_ACROSS, JobSpec, Pin, Precision, Shape, StabilityMethod, Start,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::{EnumString, IntoStaticStr};
@@ -16,8 +18,12 @@ pub enum Preset {
     Draft,
     /// The settings of figure7.
     Standard,
-    /// Two thirds of the element size and a smaller step than the standard, to check it by.
+    /// Two thirds of the element size of the standard, to check it by.
     Reference,
+    /// The coarsest mesh whose own error of μ\* is within 2 %.
+    TwoPercent,
+    /// The coarsest mesh whose own error of μ\* is within 1 %.
+    OnePercent,
 }
 
 /// Largest refinement, relative to the desired element count, to get a node row at the clamp's edge.
@@ -31,7 +37,8 @@ const MAX_TRIED_COUNTS: usize = 10_000;
 
 impl Preset {
     /// All presets, the cheapest first.
-    pub const ALL: [Self; 3] = [Self::Draft, Self::Standard, Self::Reference];
+    pub const ALL: [Self; 5] =
+        [Self::Draft, Self::Standard, Self::Reference, Self::TwoPercent, Self::OnePercent];
 
     /// The name in study files.
     pub fn name(self) -> &'static str {
@@ -43,7 +50,17 @@ impl Preset {
         name.parse().ok()
     }
 
-    /// Elements along the pin's shortest edge. The resulting element size is the target in all directions.
+    /// The accuracy that it asks for; none if it has one mesh.
+    pub fn accuracy(self) -> Option<Accuracy> {
+        match self {
+            Self::TwoPercent => Some(Accuracy { mu_star: 0.02 }),
+            Self::OnePercent => Some(Accuracy { mu_star: 0.01 }),
+            Self::Draft | Self::Standard | Self::Reference => None,
+        }
+    }
+
+    /// Elements along the pin's shortest edge, on the finest mesh if it asks for an accuracy. The resulting element size is the target in
+    /// all directions.
     ///
     /// It is a count and not a size in metres, because the problem scales with the pin.
     pub fn elements_along_shortest_edge(self) -> usize {
@@ -51,34 +68,23 @@ impl Preset {
             Self::Draft => 10,
             Self::Standard => 20,
             Self::Reference => 30,
+            Self::TwoPercent | Self::OnePercent => FINEST * Self::Draft.elements_along_shortest_edge(),
         }
     }
 
     /// Time step as a fraction of the stability limit.
     pub fn safety_factor(self) -> f64 {
-        match self {
-            Self::Draft => 0.9,
-            Self::Standard => 0.7,
-            Self::Reference => 0.5,
-        }
+        if self == Self::Draft { 0.9 } else { 0.7 }
     }
 
     /// Tolerance of the periodic state, [`Detection::tolerance`](crate::spec::Detection::tolerance).
     pub fn tolerance(self) -> f64 {
-        match self {
-            Self::Draft => 0.03,
-            Self::Standard => 0.01,
-            Self::Reference => 0.003,
-        }
+        if self == Self::Draft { 0.03 } else { 0.01 }
     }
 
     /// Drift of the periodic state, [`Detection::drift_tolerance`](crate::spec::Detection::drift_tolerance).
     pub fn drift_tolerance(self) -> f64 {
-        match self {
-            Self::Draft => 0.003,
-            Self::Standard => 0.001,
-            Self::Reference => 0.0003,
-        }
+        if self == Self::Draft { 0.003 } else { 0.001 }
     }
 
     /// Element counts for a pin under a clamp. A cylinder has rows of nodes at many distances, so its counts do not depend on the clamp.
@@ -86,7 +92,12 @@ impl Preset {
     /// In the direction across the clamp's edge it is the smallest count, from the desired one up to four times as many,
     /// that has a node row at the edge. If there is none, it is the desired count, and the solver refuses the scene with
     /// the reason.
+    ///
+    /// The finest mesh of an accuracy, halved twice, is that of a draft. So all of its meshes have a node row at the clamp's edge.
     pub fn elements(self, pin: &Pin, clamp: &Clamp) -> [usize; 3] {
+        if self.accuracy().is_some() {
+            return Self::finest_elements(pin, clamp);
+        }
         let shortest_m = pin.extent_m().iter().copied().fold(f64::INFINITY, f64::min);
         let size_m = shortest_m / self.elements_along_shortest_edge() as f64;
         // Halves are rounded up: 15 mm in 2 mm elements give 8. The scene's check refuses counts out of bounds.
@@ -105,8 +116,7 @@ impl Preset {
         elements
     }
 
-    /// The finest mesh of a job that asks for an accuracy and gives no mesh. Halved twice it is the draft's, which has a row of nodes at the
-    /// clamp's edge, so all of them have one.
+    /// The finest mesh of a job that asks for an accuracy and gives no mesh.
     pub(in crate::study) fn finest_elements(pin: &Pin, clamp: &Clamp) -> [usize; 3] {
         Self::Draft.elements(pin, clamp).map(|count| FINEST * count)
     }
@@ -114,7 +124,7 @@ impl Preset {
     /// Parameters that have no effect beside a preset that takes precedence: those that it sets, and the time step, which
     /// takes precedence over the safety factor.
     pub(in crate::study) const COVERS: &'static [&'static str] =
-        &["elements", "safety_factor", "time_step_s", "tolerance", "drift_tolerance"];
+        &["elements", "safety_factor", "time_step_s", "tolerance", "drift_tolerance", "accuracy_mu_star"];
 
     /// Chooses how a job on a rigid disk is solved, except for the parameters that something else `gives` by name: in the
     /// way that is fastest for the same errors (docs/performance.md). This is precision `single`, and, on meshes finer than
@@ -148,9 +158,12 @@ impl Preset {
     /// Parameters of [`Self::choose_way`]. A preset that takes precedence leaves those alone that a study gives.
     pub(in crate::study) const CHOOSES: &'static [&'static str] = &["precision", "start", "stability"];
 
-    /// Sets mesh, time step and detection of a job, except for the parameters that something else `gives` by name. The
+    /// Sets mesh, time step, detection and accuracy of a job, except for the parameters that something else `gives` by name. The
     /// mesh is made for the job's own pin and clamp.
     pub(in crate::study) fn fill(self, job: &mut JobSpec, gives: impl Fn(&str) -> bool) {
+        if !gives("accuracy_mu_star") {
+            job.accuracy = self.accuracy();
+        }
         let elements = self.elements(&job.scene.pin, &job.scene.clamp);
         for (axis, name) in ["nx", "ny", "nz"].into_iter().enumerate() {
             if !gives(name) {
