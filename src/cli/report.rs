@@ -6,6 +6,7 @@ use super::signals::raise_on_signal;
 use super::unreadable::log_unreadable_rows;
 use crate::exit;
 use crate::queue::{Location, Queue};
+use crate::report::accuracy;
 use crate::study::Spacing;
 use crate::sweep::{self, Purpose, ReportContent, ReportRequest, Revision};
 use crate::worker::Interrupt;
@@ -165,6 +166,9 @@ pub(crate) async fn write(
         for line in lines {
             log(format_args!("  {line}"));
         }
+    }
+    if let Some(sentence) = accuracy::not_reached(&content.rows) {
+        log(format_args!("warning: {sentence}"));
     }
     log(format_args!("report written to {}", folder.display()));
     Ok(())

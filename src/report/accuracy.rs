@@ -44,6 +44,7 @@ pub(super) fn in_words(rows: &[JobRow]) -> Vec<String> {
             reasons.join("; ")
         ));
     }
+    sentences.extend(asked_in_words(rows));
     let errors = records.iter().map(|record| record.mu_star_se.abs());
     let largest = errors.filter(|se| se.is_finite()).fold(0.0, f64::max);
     sentences.push(format!(
@@ -59,4 +60,37 @@ pub(super) fn in_words(rows: &[JobRow]) -> Vec<String> {
         "Digits: μ* and frequencies end at the digit in which the larger of the two errors begins.{few} jobs.csv has all digits."
     ));
     sentences
+}
+
+/// How many jobs reach the accuracy that they ask for; none if no job asks for one.
+fn asked_in_words(rows: &[JobRow]) -> Option<String> {
+    let asked = rows.iter().filter_map(|row| row.record()?.accuracy_reached);
+    let [reached, others] =
+        asked.fold(
+            [0, 0],
+            |[reached, others], is_reached| {
+                if is_reached { [reached + 1, others] } else { [reached, others + 1] }
+            },
+        );
+    let jobs = count(reached + others, "job");
+    match (reached, others) {
+        (0, 0) => None,
+        (_, 0) => Some(format!("Accuracy: what is asked for is reached in all jobs that ask ({jobs}).")),
+        _ => Some(format!(
+            "Accuracy: what is asked for is not reached in {others} of {jobs}, which are listed under “Trouble”."
+        )),
+    }
+}
+
+/// A warning about jobs that do not reach the accuracy that they ask for; none if there are no such jobs.
+pub fn not_reached(rows: &[JobRow]) -> Option<String> {
+    let is_not_reached =
+        |row: &&JobRow| row.record().is_some_and(|record| record.accuracy_reached == Some(false));
+    let jobs = rows.iter().filter(is_not_reached).count();
+    (jobs > 0).then(|| {
+        format!(
+            "{} not reach the accuracy that is asked for, also on the finest mesh",
+            if jobs == 1 { "1 job does".to_owned() } else { format!("{jobs} jobs do") }
+        )
+    })
 }

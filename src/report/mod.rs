@@ -13,7 +13,7 @@
 //! * [`write_stability`] – the linear stability of steady sliding: maps, branches of modes, thresholds.
 //! * [`write()`] – a folder with all of it, and a page for a browser that contains all of it.
 
-mod accuracy;
+pub mod accuracy;
 pub mod columns;
 mod comparison;
 mod comparison_files;

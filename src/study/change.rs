@@ -120,9 +120,11 @@ impl Outline {
         let (parent, name) = parameter.pointer.rsplit_once('/').unwrap_or_default();
         if let Some(Value::Object(fields)) = self.document.pointer_mut(parent) {
             fields.remove(name);
-            // Without any field it would be a damping that says nothing.
-            if parent == "/damping" && fields.is_empty() {
-                self.document.as_object_mut().map(|study| study.remove("damping"));
+            // Without any field it would be a damping or an accuracy that says nothing.
+            if fields.is_empty()
+                && let Some(part @ ("damping" | "accuracy")) = parent.strip_prefix('/')
+            {
+                self.document.as_object_mut().map(|study| study.remove(part));
             }
         }
     }

@@ -43,6 +43,9 @@ fn record(template: &JobRecord, fine: Cycle, coarse: Cycle) -> JobRecord {
     }
 }
 
+/// A change of a record and of what it says of the coarser mesh.
+type Change = fn(&mut JobRecord, &mut CoarseStart);
+
 fn template() -> JobRecord {
     let mut spec = coarse();
     spec.run.limit_s = 0.001;
@@ -82,7 +85,6 @@ fn what_cannot_be_compared_is_unknown() {
     };
     assert!(changed(&|_, _| {}).is_ok());
     assert!(changed(&|_, start| start.frequency_hz = Some(15_149.0)).is_ok());
-    type Change = fn(&mut JobRecord, &mut CoarseStart);
     let cases: [(Change, UnknownError); 12] = [
         (|_, start| start.frequency_hz = Some(15_151.0), UnknownError::OtherFrequency),
         (|_, start| start.frequency_hz = None, UnknownError::OtherFrequency),

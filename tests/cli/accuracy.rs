@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, rows, small, stderr, stdout};
+use crate::support::{Folder, rows, small, stderr, stdout, without_wall_times};
 
 /// Protects: `pareto` prints a table and writes files into the report's folder, for a study by name or by file and for
 /// several studies at once.
@@ -68,12 +68,19 @@ fn presets_are_shown_with_their_errors() {
     let json: Value = serde_json::from_str(&folder.ok("presets --json")).unwrap();
     let presets = json["presets"].as_array().unwrap();
     let names: Vec<_> = presets.iter().map(|preset| preset["name"].as_str().unwrap()).collect();
-    assert_eq!(names, ["draft", "standard", "reference"]);
-    for (preset, measured) in presets.iter().zip(json["evidence"]["presets"].as_array().unwrap()) {
+    assert_eq!(names, ["draft", "standard", "reference", "two_percent", "one_percent"]);
+    let measured = json["evidence"]["presets"].as_array().unwrap();
+    assert_eq!(measured.len(), 3, "the others have no error but what they ask for");
+    for (place, preset) in presets.iter().enumerate() {
         let line = text.lines().find(|line| line.starts_with(preset["name"].as_str().unwrap())).unwrap();
-        let error = format!("{:.1} %", 100.0 * measured["mu_star_error"].as_f64().unwrap());
+        let share = |share: &Value| format!("{:.1} %", 100.0 * share.as_f64().unwrap());
+        let error = match measured.get(place) {
+            Some(measured) => {
+                format!("{}, {}", share(&measured["mu_star_median"]), share(&measured["mu_star_95"]))
+            }
+            None => share(&preset["accuracy"]["mu_star"]),
+        };
         assert!(line.contains(&error) && line.contains(&preset["safety_factor"].to_string()), "{line}");
-        assert_eq!(preset["elements"], measured["elements"]);
     }
 }
 
@@ -89,5 +96,85 @@ fn one_job_with_a_preset() {
     folder.add("preset", &preset);
     assert_eq!(folder.ok("solve plain.json --preset draft --json"), folder.ok("solve preset.json --json"));
     let end = folder.command("solve plain.json --preset exact").assert().code(2);
-    assert!(stderr(&end).contains("draft, standard, reference"), "{}", stderr(&end));
+    assert!(
+        stderr(&end).contains("draft, standard, reference, two_percent, one_percent"),
+        "{}",
+        stderr(&end)
+    );
+}
+
+/// Two jobs that ask for an accuracy, on meshes of 6, 12 and 24 elements.
+fn asking(mu_star: f64) -> Value {
+    json!({
+        "scene": { "pin": { "elements": [24, 24, 24] }, "clamp": { "width_m": 0.002 }, "contact": { "mu": 0.4 } },
+        "numerics": { "precision": "single" },
+        "accuracy": { "mu_star": mu_star },
+        "grid": { "omega_rpm": [10, 20] },
+    })
+}
+
+/// Protects: a job that asks for an accuracy ends on the first mesh that has it, and its row has this mesh. If the finest one has not, the
+/// command and the report say so.
+#[test]
+fn an_accuracy_is_reached_or_not() {
+    for (mu_star, elements, reached) in [(0.9, "12", "true"), (1.0e-5, "24", "false")] {
+        let folder = Folder::with("mine", &asking(mu_star));
+        let run = folder.command("run mine.json").assert().code(0);
+        let warning = "warning: 2 jobs do not reach the accuracy that is asked for";
+        assert_eq!(stderr(&run).contains(warning), reached == "false", "{}", stderr(&run));
+        for row in rows(&folder.ok("export mine --all")) {
+            assert_eq!(
+                (row["mesh_elements_x"].as_str(), row["accuracy_reached"].as_str()),
+                (elements, reached)
+            );
+            let number = |name: &str| row[name].parse::<f64>().unwrap();
+            assert_eq!(number("mu_star_mesh_error") <= mu_star * number("mu_star"), reached == "true");
+        }
+        let page = folder.read("reports/mine/report.md");
+        assert_eq!(page.contains("Accuracy not reached (2)"), reached == "false");
+        let solved = folder.ok("solve mine.json --set omega_rpm=10");
+        assert!(
+            solved.lines().any(|line| line.contains("mesh_elements_x") && line.contains(elements)),
+            "{solved}"
+        );
+    }
+}
+
+/// Protects: a sweep that is killed on different meshes goes on from its checkpoints and ends with the same bytes.
+#[test]
+fn an_accuracy_survives_interruptions() {
+    let undisturbed = Folder::with("mine", &asking(1.0e-5));
+    undisturbed.ok("run mine.json --threads 1");
+    let expected = without_wall_times(&undisturbed.ok("export mine --all"));
+    let folder = Folder::with("mine", &asking(1.0e-5));
+    let mut stopped = 0;
+    for wait_ms in [200, 400, 700, 1000] {
+        let run = folder.start("run mine.json --threads 1");
+        std::thread::sleep(std::time::Duration::from_millis(wait_ms));
+        run.signal("INT");
+        let (code, _, messages) = run.end();
+        assert!(matches!(code, Some(0 | 3)), "{messages}");
+        stopped += usize::from(code == Some(3));
+    }
+    assert!(stopped > 0, "no run was interrupted");
+    folder.ok("run mine.json --threads 2");
+    assert_eq!(without_wall_times(&folder.ok("export mine --all")), expected);
+}
+
+/// Protects: the command line takes an accuracy in percent or as a share, in the place of the study's mesh.
+#[test]
+fn an_accuracy_on_the_command_line() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
+    for text in ["2%", "2 %", "0.02"] {
+        let end = folder.command("validate mine.json --accuracy").arg(text).assert().code(0);
+        let printed = stdout(&end);
+        // The clamp of 4 mm is a third of the pin, so 10 elements become 12.
+        assert!(printed.contains("48×60×40"), "{printed}");
+    }
+    for (wrong, why) in
+        [("two", "for example 1% or 0.01"), ("0%", "accuracy.mu_star"), ("200%", "accuracy.mu_star")]
+    {
+        let end = folder.command("validate mine.json --accuracy").arg(wrong).assert().code(2);
+        assert!(stderr(&end).contains(why), "{}", stderr(&end));
+    }
 }

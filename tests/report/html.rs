@@ -5,7 +5,7 @@ use crate::synthetic::{after, failed, numerics, partial_study, periodic, report,
 use std::fs;
 use tribosweep_mechanics::analysis::{Build, Regime};
 use tribosweep_output::report::{
-    JobNumerics, JobRow, Provenance, Report, ResultGroup, RowState, inspections, write,
+    JobNumerics, JobRow, Provenance, Report, ResultGroup, RowState, accuracy, inspections, write,
 };
 
 fn page_of(report: &Report) -> String {
@@ -328,6 +328,38 @@ fn digits_follow_the_error() {
         assert!(read("report.md").contains(&sentence), "{sentence}");
         assert!(read("report.md").contains(&format!(" {mu_star} |")));
     }
+}
+
+/// Protects: the page says in how many jobs the accuracy that is asked for is not reached, and lists these with their errors.
+#[test]
+fn jobs_that_are_not_accurate_are_listed() {
+    let asked = |omega, reached, coarser: Option<f64>| {
+        let mut row = row(omega, 0.4, periodic(0.3));
+        if let Some(mu_star) = coarser {
+            row = after(row, mu_star, 14_500.0);
+        }
+        if let RowState::Done(record) = &mut row.state {
+            record.accuracy_reached = Some(reached);
+        }
+        row
+    };
+    let mixed = [asked(2.0, true, Some(0.301)), asked(3.0, false, Some(0.33)), asked(4.0, false, None)];
+    let text_of = |rows: &[JobRow]| text(&page(rows));
+    let found = text_of(&mixed);
+    for part in [
+        "what is asked for is not reached in 2 of 3 jobs",
+        "Accuracy not reached (2)",
+        "the error of μ* may be 0.037, 12 % of it",
+        "the error of μ* is unknown: no run on a coarser mesh",
+    ] {
+        assert!(found.contains(part), "{part}: {found}");
+    }
+    assert_eq!(accuracy::not_reached(&mixed).unwrap().split(' ').next(), Some("2"));
+    let all = text_of(&mixed[..1]);
+    assert!(all.contains("reached in all jobs that ask (1 job)") && !all.contains("Accuracy not"), "{all}");
+    assert_eq!(accuracy::not_reached(&mixed[..1]), None);
+    let nobody = text_of(&[row(2.0, 0.4, periodic(0.3))]);
+    assert!(!nobody.contains("Accuracy"), "{nobody}");
 }
 
 /// Protects: a study says in how many jobs the error of the mesh is unknown, and why.

@@ -53,6 +53,7 @@ pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
         growth_rate_per_s: None,
         obstacle: None,
         stability: None,
+        accuracy_reached: None,
         start: None,
         disk: None,
         holder: Vec::new(),

@@ -518,3 +518,26 @@ fn programs_that_are_no_tables_are_refused() {
     assert_contains(&windows, &["run.window_s = ", "expected absent without scene.program"]);
     assert_contains(&of("", r#", "run": { "window_s": 1 }"#), &["run.window_s = 1: expected a length"]);
 }
+
+/// Protects: an accuracy is a share of μ*, and is asked for only where there are meshes to go through and a steady state.
+#[test]
+fn an_accuracy_needs_meshes_and_a_steady_state() {
+    for wrong in ["0", "-0.01", "1.5"] {
+        let text = refusal(&format!(r#"{{ "accuracy": {{ "mu_star": {wrong} }} }}"#));
+        assert_contains(&text, &[&format!("accuracy.mu_star = {wrong}")]);
+    }
+    assert_contains(&refusal(r#"{ "accuracy": 0.01 }"#), &["accuracy = 0.01: expected"]);
+    assert_contains(&refusal(r#"{ "accuracy": {} }"#), &["accuracy", "mu_star"]);
+    for (other, why) in [
+        (r#""scene": { "disk": { "kind": "elastic" } }"#, "absent on an elastic disk"),
+        (r#""numerics": { "time_step_s": 1e-8 }"#, "absent with numerics.time_step_s"),
+        (
+            r#""scene": { "program": { "omega_rpm": [[0, 1], [0.04, 9]] } }, "run": { "limit_s": 0.04, "window_s": 0.01 }"#,
+            "absent with scene.program",
+        ),
+    ] {
+        for asked in [r#""accuracy": { "mu_star": 0.02 }"#, r#""preset": "two_percent""#] {
+            assert_contains(&refusal(&format!("{{ {asked}, {other} }}")), &["accuracy", why]);
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! Jobs that failed, that did not become periodic, or that are missing: where they are in the grid, and why.
+//! Jobs that failed, that did not become periodic or as exact as they ask for, or that are missing: where they are in the grid, and why.
 
 use crate::analysis::Outcome;
 use crate::publish::page::{Block, Grid, Section, Text};
@@ -19,6 +19,7 @@ pub(super) fn section(rows: &[JobRow]) -> Option<Section> {
     }
     blocks.extend(list("Failed jobs", rows, failed));
     blocks.extend(list("Not periodic", rows, not_periodic));
+    blocks.extend(list("Accuracy not reached", rows, not_accurate));
     blocks.extend(list("Missing jobs", rows, missing));
     (!blocks.is_empty()).then(|| Section::new("trouble", "Trouble", blocks))
 }
@@ -53,6 +54,19 @@ fn not_periodic(row: &JobRow) -> Option<Text> {
         MU_STAR.text_with_error(record.mu_star, Some(record.mu_star_se)),
         record.cycles
     );
+    Some(words.into())
+}
+
+fn not_accurate(row: &JobRow) -> Option<Text> {
+    let record = row.record().filter(|record| record.accuracy_reached == Some(false))?;
+    let words = match record.mesh_error() {
+        Ok(own) => format!(
+            "the error of μ* may be {}, {} % of it",
+            value::significant(own.mu_star, 2),
+            value::significant(100.0 * own.mu_star / record.mu_star.abs(), 2)
+        ),
+        Err(why) => format!("the error of μ* is unknown: {}", why.reason()),
+    };
     Some(words.into())
 }
 
