@@ -141,7 +141,8 @@ impl JobSpec {
     ///
     /// A mesh of half as many elements in each direction is best. It may have no row of nodes at the clamp's edge, and two thirds one.
     pub fn coarser_elements(&self) -> Vec<[usize; 3]> {
-        let is_asked = self.accuracy.is_some() || self.starts_in_motion();
+        let is_asked =
+            self.accuracy.is_some() || self.run.start == Start::Compared || self.starts_in_motion();
         if !is_asked || !self.has_run() || self.continuation.is_some() || !self.scene.program.is_constant() {
             return Vec::new();
         }

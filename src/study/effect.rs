@@ -1,6 +1,6 @@
 //! What of a job has no effect on its result. Its key and the list of its inputs leave that out.
 
-use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, StabilityMethod};
+use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, StabilityMethod, Start};
 
 /// The fields of a job that have no effect, as JSON pointers; what is below such a field has none either. Coefficients that the friction
 /// law does not use are no fields of [`crate::spec::Contact::in_use`].
@@ -28,7 +28,13 @@ pub(super) fn without_effect(spec: &JobSpec) -> Vec<&'static str> {
                 "/detection/decay_observation_s",
             ],
         ),
-        (spec.coarser_elements().is_empty() || !spec.starts_in_motion(), &["/run/start"]),
+        (!has_start(spec), &["/run/start"]),
     ];
     rules.into_iter().filter(|(applies, _)| *applies).flat_map(|(_, fields)| fields).copied().collect()
+}
+
+/// Whether the start changes what a job does. An accuracy has a run on a coarser mesh in any case.
+fn has_start(spec: &JobSpec) -> bool {
+    let is_compared = spec.run.start == Start::Compared && spec.accuracy.is_none();
+    (spec.starts_in_motion() || is_compared) && !spec.coarser_elements().is_empty()
 }

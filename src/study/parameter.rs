@@ -158,7 +158,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("limit_s", "/run/limit_s", Kind::Number, "simulated time after which a run ends"),
     parameter("stop_early", "/run/stop_early", Kind::Flag, "stop once periodic or decayed"),
     parameter("average_last_fraction", "/run/average_last_fraction", Kind::Number, "last fraction of the run that is averaged"),
-    parameter("start", "/run/start", START, "whether a run starts from rest or from the limit cycle of a coarser mesh"),
+    parameter("start", "/run/start", START, "what a run starts from: rest, the limit cycle of a coarser mesh, or rest after a run there to compare with"),
     parameter("window_s", "/run/window_s", Kind::Number, "length of the windows of a run whose speed or load changes, about"),
     parameter("cycles", "/detection/cycles", Kind::Count, "consecutive limit cycles that must repeat"),
     parameter("tolerance", "/detection/tolerance", Kind::Number, "largest spread of a per-cycle figure over them"),

@@ -136,6 +136,33 @@ fn without_a_limit_cycle_a_job_starts_from_rest() {
     assert_eq!(JobRecord { start: None, ..short }, from_rest(&spec));
 }
 
+/// Protects: a run that starts from rest after a run to compare with has the bits of one without, and knows the error of its mesh. This
+/// also holds for scenes whose motion cannot be carried over.
+#[test]
+fn a_comparison_changes_nothing_but_what_is_known() {
+    let mut plain = scene();
+    plain.scene.contact.mu = 0.4;
+    plain.scene.disk.omega_rpm = 20.0;
+    plain.run.start = Start::Compared;
+    let mut held = plain.clone();
+    held.scene.holder.stiffness_y_n_m = Some(5.0e6);
+    held.scene.holder.mass_kg = Some(0.005);
+    held.scene.holder.damping_y_n_s_m = Some(50.0);
+    held.run.limit_s = 0.02;
+    for spec in [plain, held] {
+        assert_eq!(spec.check(), Ok(()));
+        let compared = run(&spec);
+        let start = compared.start.clone().unwrap();
+        assert!(!start.is_used() && start.only_compared && start.elements == [6, 6, 6], "{start:?}");
+        let known = compared.mesh_error();
+        assert!(!matches!(known, Err(UnknownError::NoCoarserMesh)), "{known:?}");
+        let alone = from_rest(&spec);
+        assert_eq!(alone.outcome, Outcome::Periodic);
+        assert_eq!(alone.mesh_error(), Err(UnknownError::NoCoarserMesh));
+        assert_eq!(JobRecord { start: None, ..compared }, alone);
+    }
+}
+
 /// Protects: records of versions without such starts are read.
 #[test]
 fn records_without_a_start_are_read() {

@@ -239,6 +239,15 @@ fn ways_without_effect_do_not_change_the_key() {
     let nested = |elements, start| with(elements, start, simulate, rigid);
     assert_eq!(nested([12, 15, 10], Start::Nested), nested([12, 15, 10], Start::Rest));
     assert_ne!(nested([12, 15, 11], Start::Nested), nested([12, 15, 11], Start::Rest));
+    assert_eq!(nested([12, 15, 10], Start::Compared), nested([12, 15, 10], Start::Rest));
+    assert_ne!(nested([12, 15, 11], Start::Compared), nested([12, 15, 11], Start::Rest));
+    let asking = |start| {
+        let mut spec = JobSpec { accuracy: Some(Accuracy { mu_star: 0.01 }), ..JobSpec::default() };
+        (spec.scene.pin.elements, spec.run.start) = ([24, 30, 20], start);
+        key(&spec)
+    };
+    assert_eq!(asking(Start::Compared), asking(Start::Rest));
+    assert_ne!(asking(Start::Nested), asking(Start::Rest));
     let decided = |kind, stability| with([12, 15, 10], Start::Rest, stability, kind);
     let elastic = DiskKind::Elastic;
     assert_eq!(decided(elastic, StabilityMethod::Eigenvalues), decided(elastic, simulate));
