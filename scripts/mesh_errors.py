@@ -59,7 +59,7 @@ SCENES = [
 RADIUS_M = 0.0914
 
 # Scenes that took no part in the calibration, drawn once.
-PROOF_SCENES = 8
+PROOF_SCENES = 16
 
 
 def proof_scenes():
@@ -471,9 +471,9 @@ def scene_table():
         more = own["contact"].get("law", "coulomb")
         rest = [name for name in ("top", "holder") if name in own] + (["a steel plate above"] if "regions" in pin else [])
         rest += [f"β_R {1e9 * own['beta_r_s']:.3g} ns"] if "beta_r_s" in own else []
-        counts = " × ".join(map(str, own["counts"])) if own["counts"] else "drawn by the program"
+        counts = " × ".join(map(str, own["counts"])) if own["counts"] else "that of `draft`"
         return [own["name"], f"{shape}{size}", f"{pin['young_modulus_pa'] / 1e9:g}, {pin['density_kg_m3']:g}, {pin['poisson_ratio']:g}", clamp,
-                f"{own['load']:g}", more, " to ".join(f"{mu:g}" for mu in own["mu"]), counts, ", ".join(rest)]
+                f"{own['load']:g}", more, " and ".join(f"{mu:g}" for mu in own["mu"]), counts, ", ".join(rest)]
     return runs.table(["scene", "pin", "E [GPa], ρ, ν", "clamp", "F [N]", "law", "μ", "mesh 1", "more"], [line(own) for own in SCENES + PROOF])
 
 
@@ -513,7 +513,7 @@ on several meshes differ by at most {apart:.1e}.
 
 {len(jobs)} jobs of {len(SCENES)} scenes ran on meshes with 1, 2, 3 and 4 times the elements of the table [below](#the-scenes) in each direction, with the numerics of `standard`. Each starts from the
 limit cycle on half of its elements where there is one. The limit of fine meshes is extrapolated from the two finest meshes, with order 1.75; ranges are those with orders 1.5 to 2. It is known
-for {len(limits)} jobs. {other} others have two different limit cycles on the two finest meshes, and the rest do not settle or slide steadily. It shares a mesh with the results of meshes 3 and 4,
+for {len(limits)} jobs. {other} have two different limit cycles on their two finest meshes, and the rest slide steadily or do not settle. The limit shares a mesh with the results of meshes 3 and 4,
 so only the lines of mesh 2 are checked by meshes that have no part in them. The tables of bounds have the jobs with a mesh 4 only.
 
 Errors of fixed meshes:
@@ -557,7 +557,7 @@ two last meshes differ by several tenths of a percent to percents.
 ## Scenes that took no part
 
 {len(PROOF)} scenes were drawn at random after the numbers above were fixed: size, material, clamp, load, law, μ. Each has 8 jobs with 1 % asked. {drawn['slides']} of {drawn['jobs']} slide steadily, and {drawn['stay']} of these do so on mesh 3 with the same μ\\* within their bound. {drawn['with_cycle']} have a limit cycle; {drawn['reached']} of these say that 1 % is reached, {drawn['coarse']} of them before the last mesh.
-The limit, from the meshes 3 and 4, is known for {drawn['checked']} of these, and {drawn['within']} are within 1 % of it. Of all {drawn['with_bound']} jobs with a bound and a limit, the bound covers {drawn['covered']} ({percent(drawn['covered'] / drawn['with_bound'], 1)}).
+The limit comes from the meshes 3 and 4, so it shares a mesh with these results. It is known for {drawn['checked']} of these, and {drawn['within']} are within 1 % of it. Of all {drawn['with_bound']} jobs with a bound and a limit, the bound covers {drawn['covered']} ({percent(drawn['covered'] / drawn['with_bound'], 1)}).
 
 ## Presets
 
