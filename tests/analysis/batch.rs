@@ -214,11 +214,11 @@ fn companions_change_nothing_where_eigenvalues_decide() {
 fn accurate_jobs(precision: Precision) -> Vec<JobSpec> {
     let mut jobs = nested_jobs(precision);
     for (i, job) in jobs.iter_mut().enumerate() {
-        job.scene.pin.elements = [24, 24, 24];
+        job.scene.pin.elements = [24, 28, 28];
         job.run.start = if i % 4 == 1 { Start::Rest } else { Start::Nested };
         job.run.limit_s = 0.0012 + 1.0e-4 * i as f64;
         job.numerics.beta2 = 0.5;
-        job.accuracy = Some(Accuracy { mu_star: [0.9, 1.0e-6][i % 2] });
+        job.accuracy = Some(Accuracy { mu_star: [0.2, 1.0e-4][i % 2] });
     }
     jobs
 }
@@ -230,7 +230,7 @@ fn companions_and_interruptions_change_nothing_where_an_accuracy_is_asked() {
     for precision in [Precision::Double, Precision::Single] {
         let jobs = accurate_jobs(precision);
         let records: Vec<_> = jobs.iter().map(|job| solve(job, &mut Unobserved).unwrap()).collect();
-        for (elements, reached) in [([12; 3], true), ([24; 3], false)] {
+        for (elements, reached) in [([12, 14, 14], true), ([24, 28, 28], false)] {
             let is_such = |record: &&JobRecord| {
                 (record.elements, record.accuracy_reached) == (Some(elements), Some(reached))
             };

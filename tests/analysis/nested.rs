@@ -91,16 +91,18 @@ fn asks(elements: [usize; 3], mu_star: f64) -> JobSpec {
 /// result of a job on this mesh. Otherwise it ends on the finest mesh and says that the accuracy is not reached.
 #[test]
 fn an_accuracy_ends_on_the_first_mesh_that_has_it() {
-    let fixed = |elements: [usize; 3]| run(&JobSpec { accuracy: None, ..asks(elements, 1.0) });
+    let fixed = |elements: [usize; 3]| run(&JobSpec { accuracy: None, ..asks(elements, 0.2) });
     let middle = fixed([12; 3]);
     let error = middle.mesh_error().unwrap().mu_star / middle.mu_star;
-    for (factor, elements, reached) in [(1.001, [12; 3], true), (0.999, [24; 3], false)] {
-        let record = run(&asks([24; 3], factor * error));
-        assert_eq!((record.elements, record.accuracy_reached), (Some(elements), Some(reached)), "{factor}");
-        assert_eq!(JobRecord { accuracy_reached: None, ..record }, fixed(elements), "{factor}");
+    for (asked, elements, reached) in
+        [(1.001 * error, [12; 3], true), (0.999 * error, [24; 3], true), (1.0e-4, [24; 3], false)]
+    {
+        let record = run(&asks([24; 3], asked));
+        assert_eq!((record.elements, record.accuracy_reached), (Some(elements), Some(reached)), "{asked}");
+        assert_eq!(JobRecord { accuracy_reached: None, ..record }, fixed(elements), "{asked}");
     }
     // One mesh alone says nothing of its error, however much is allowed.
-    let coarsest = run(&asks([6; 3], 10.0));
+    let coarsest = run(&asks([6; 3], 0.2));
     assert_eq!((coarsest.elements, coarsest.accuracy_reached), (Some([6; 3]), Some(false)));
     assert_eq!(coarsest.mesh_error(), Err(UnknownError::NoCoarserMesh));
 }

@@ -103,10 +103,10 @@ fn one_job_with_a_preset() {
     );
 }
 
-/// Two jobs that ask for an accuracy, on meshes of 6, 12 and 24 elements.
-fn asking(mu_star: f64) -> Value {
+/// Two jobs that ask for an accuracy, on meshes that end with this number of elements in each direction.
+fn asking(mu_star: f64, finest: usize) -> Value {
     json!({
-        "scene": { "pin": { "elements": [24, 24, 24] }, "clamp": { "width_m": 0.002 }, "contact": { "mu": 0.4 } },
+        "scene": { "pin": { "elements": [finest, finest, finest] }, "clamp": { "width_m": 0.002 }, "contact": { "mu": 0.4 } },
         "numerics": { "precision": "single" },
         "accuracy": { "mu_star": mu_star },
         "grid": { "omega_rpm": [10, 20] },
@@ -117,8 +117,8 @@ fn asking(mu_star: f64) -> Value {
 /// command and the report say so.
 #[test]
 fn an_accuracy_is_reached_or_not() {
-    for (mu_star, elements, reached) in [(0.9, "12", "true"), (1.0e-5, "24", "false")] {
-        let folder = Folder::with("mine", &asking(mu_star));
+    for (mu_star, finest, elements, reached) in [(0.2, 48, "24", "true"), (1.0e-4, 24, "24", "false")] {
+        let folder = Folder::with("mine", &asking(mu_star, finest));
         let run = folder.command("run mine.json").assert().code(0);
         let warning = "warning: 2 jobs do not reach the accuracy that is asked for";
         assert_eq!(stderr(&run).contains(warning), reached == "false", "{}", stderr(&run));
@@ -143,10 +143,10 @@ fn an_accuracy_is_reached_or_not() {
 /// Protects: a sweep that is killed on different meshes goes on from its checkpoints and ends with the same bytes.
 #[test]
 fn an_accuracy_survives_interruptions() {
-    let undisturbed = Folder::with("mine", &asking(1.0e-5));
+    let undisturbed = Folder::with("mine", &asking(1.0e-4, 24));
     undisturbed.ok("run mine.json --threads 1");
     let expected = without_wall_times(&undisturbed.ok("export mine --all"));
-    let folder = Folder::with("mine", &asking(1.0e-5));
+    let folder = Folder::with("mine", &asking(1.0e-4, 24));
     let mut stopped = 0;
     for wait_ms in [200, 400, 700, 1000] {
         let run = folder.start("run mine.json --threads 1");
