@@ -33,8 +33,13 @@ pub(super) fn without_effect(spec: &JobSpec) -> Vec<&'static str> {
     rules.into_iter().filter(|(applies, _)| *applies).flat_map(|(_, fields)| fields).copied().collect()
 }
 
-/// Whether the start changes what a job does. An accuracy has a run on a coarser mesh in any case.
+/// Whether the start changes what a job does: there may be no coarser mesh or no motion to start from, and an accuracy has a run on a coarser
+/// mesh in any case.
 fn has_start(spec: &JobSpec) -> bool {
-    let is_compared = spec.run.start == Start::Compared && spec.accuracy.is_none();
-    (spec.starts_in_motion() || is_compared) && !spec.coarser_elements().is_empty()
+    let has_coarser = || !spec.coarser_elements().is_empty();
+    match spec.run.start {
+        Start::Rest => true,
+        Start::Nested => spec.starts_in_motion() && has_coarser(),
+        Start::Compared => spec.accuracy.is_none() && has_coarser(),
+    }
 }
