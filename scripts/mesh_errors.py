@@ -505,6 +505,7 @@ the element size. The ratio r comes from the numbers of elements.
 
 The error is *unknown*, with the reason beside it (`mesh_error_unknown`), if the job did not run on a coarser mesh, if the run there did not settle, or if its outcome, its
 regime or its clamp is another one or its frequency is more than {percent(SAME_FREQUENCY, 0)} away: then the two are different limit cycles, and their difference is not an error.
+A job that starts from rest, as with `draft`, runs on a coarser mesh with `"start": "compared"`.
 
 Steady sliding depends on the mesh only by where along the curved track the pressure is. Its bound is {STEADY_SLIDING:g} of μ\\*, unless the coarser mesh has a limit cycle. {slides} such jobs
 on several meshes differ by at most {apart:.1e}.
