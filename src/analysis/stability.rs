@@ -166,7 +166,8 @@ pub fn shapes(
     count: usize,
 ) -> Result<Vec<Shape>, JobError> {
     // The number of modes is that of the record, so that both have the same ones.
-    let point = structures.with(spec, model, |structure| structure.point(model, &drive(spec), MODES))?;
+    let of = |structure: &Structure| structure.point_with_shapes(model, &drive(spec), MODES);
+    let point = structures.with(spec, model, of)?;
     Ok(point.modes.into_iter().take(count).map(|mode| (complex_mode(&mode), mode.shape)).collect())
 }
 

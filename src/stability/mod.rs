@@ -99,6 +99,19 @@ impl Structure {
         self.point_with(model, drive, modes, Accuracy::default())
     }
 
+    /// As [`Structure::point`], with the shapes of the modes.
+    ///
+    /// # Errors
+    /// As [`Structure::point`].
+    pub fn point_with_shapes(
+        &self,
+        model: &Model,
+        drive: &Drive,
+        modes: usize,
+    ) -> Result<SlidingPoint, StabilityError> {
+        self.point_with(model, drive, modes, Accuracy { with_shapes: true, ..Accuracy::default() })
+    }
+
     /// As [`Structure::point`], with other limits for the corrections in the full space. On an elastic disk there are none.
     ///
     /// # Errors

@@ -6,6 +6,7 @@
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, c64};
+use std::cmp::Ordering;
 
 /// P(λ) in a basis, with real matrices.
 #[derive(Debug, Clone)]
@@ -66,10 +67,10 @@ const STEPS_OF_FACTORS: usize = 6;
 const CHANGE: f64 = 1e-12;
 
 impl Pencil {
-    /// All eigenvalues with frequency ≥ 0 and their eigenvectors. The largest growth rate comes first.
-    pub fn eigenpairs(&self) -> Vec<(c64, Vec<c64>)> {
+    /// The first-order form of P, whose eigenvalues are those of P over the scale \[1/s\] that is returned. In this unit of time all
+    /// entries are of order one.
+    fn first_order(&self) -> (Mat<f64>, f64) {
         let n = self.stiffness.nrows();
-        // In the unit 1/scale of time all entries are of order one.
         let scale = (0..n).map(|i| self.stiffness[(i, i)]).fold(0.0, f64::max).sqrt();
         let matrix = Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
             (true, true) => 0.0,
@@ -81,24 +82,43 @@ impl Pencil {
                 -self.viscous.iter().fold(own, |sum, (_, matrix)| sum + matrix[(i, j)]) / scale
             }
         });
+        (matrix, scale)
+    }
+
+    /// All eigenvalues with frequency ≥ 0. The largest growth rate comes first.
+    pub fn eigenvalues(&self) -> Vec<c64> {
+        let (matrix, scale) = self.first_order();
+        let values = matrix.eigenvalues().unwrap_or_default();
+        let mut found: Vec<c64> = values.into_iter().map(|value| value * scale).filter(is_mode).collect();
+        found.sort_by(growing_first);
+        found
+    }
+
+    /// As [`Self::eigenvalues`], with their right eigenvectors. This takes twice as long.
+    fn eigenpairs(&self) -> Vec<(c64, Vec<c64>)> {
+        let (matrix, scale) = self.first_order();
         let Ok(eigen) = matrix.eigen() else { return Vec::new() };
-        let mut found: Vec<(c64, usize)> = (0..2 * n)
+        let mut found: Vec<(c64, usize)> = (0..matrix.nrows())
             .map(|k| (eigen.S()[k] * scale, k))
-            .filter(|(value, _)| value.im >= 0.0 && value.re.is_finite())
+            .filter(|(value, _)| is_mode(value))
             .collect();
-        found.sort_by(|(a, _), (b, _)| b.re.total_cmp(&a.re).then(a.im.total_cmp(&b.im)));
-        found.into_iter().map(|(value, k)| (value, (0..n).map(|i| eigen.U()[(i, k)]).collect())).collect()
+        found.sort_by(|(a, _), (b, _)| growing_first(a, b));
+        let vector = |k: usize| (0..self.stiffness.nrows()).map(|i| eigen.U()[(i, k)]).collect();
+        found.into_iter().map(|(value, k)| (value, vector(k))).collect()
     }
 
     /// The eigenpairs that continue those of a smaller basis: each the one whose vector is most alike, and none twice. The
     /// nearest eigenvalue may belong to another mode.
-    pub fn followed(&self, pairs: &[Pair]) -> Vec<(c64, Vec<c64>)> {
+    pub fn continued(&self, pairs: &[Pair]) -> Vec<Pair> {
         let mut all = self.eigenpairs();
         let follow = |pair: &Pair| {
             let alike = all.iter().map(|(_, right)| likeness(&pair.right, right)).enumerate();
             match alike.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
-                Some((at, _)) => all.swap_remove(at),
-                None => (pair.value, pair.right.clone()),
+                Some((at, _)) => {
+                    let (value, right) = all.swap_remove(at);
+                    self.polish(Clock::Continuous, value, Some(&right))
+                }
+                None => pair.clone(),
             }
         };
         pairs.iter().map(follow).collect()
@@ -159,14 +179,18 @@ impl Pencil {
         })
     }
 
-    /// Improves an eigenvalue and its right eigenvector by residual inverse iteration (Neumaier, 1985), and finds its left
-    /// eigenvector. One factorization serves if the given eigenvalue is close.
-    pub fn polish(&self, clock: Clock, value: c64, right: &[c64]) -> Pair {
+    /// Improves an eigenvalue by residual inverse iteration (Neumaier, 1985), and finds its right and left eigenvectors.
+    /// One factorization serves if the given eigenvalue is close. A right eigenvector of a smaller basis is a better start than
+    /// none if the eigenvalue is not.
+    pub fn polish(&self, clock: Clock, value: c64, right: Option<&[c64]>) -> Pair {
         let n = self.stiffness.nrows();
         let mut value = value;
-        let mut x = Mat::from_fn(n, 1, |i, _| right.get(i).copied().unwrap_or(c64::new(0.0, 0.0)));
-        normalize(&mut x);
         let mut factors = self.at(clock, value).partial_piv_lu();
+        let mut x = match right {
+            Some(right) => Mat::from_fn(n, 1, |i, _| right.get(i).copied().unwrap_or(c64::new(0.0, 0.0))),
+            None => right_vector(&factors, n),
+        };
+        normalize(&mut x);
         let mut left = left_vector(&factors, &x);
         for step in 1..=STEPS {
             let products = self.products(&x);
@@ -283,6 +307,16 @@ fn times(matrix: &Mat<f64>, x: &Mat<c64>) -> Mat<c64> {
     Mat::from_fn(matrix.nrows(), 1, |i, _| c64::new(product[(i, 0)], product[(i, 1)]))
 }
 
+/// The right eigenvector by inverse iteration, from a vector that is orthogonal to no mode.
+fn right_vector(factors: &PartialPivLu<c64>, n: usize) -> Mat<c64> {
+    let mut right = Mat::from_fn(n, 1, |i, _| c64::new(libm::cos(i as f64), libm::sin(0.7 * i as f64)));
+    for _ in 0..2 {
+        right = factors.solve(&right);
+        normalize(&mut right);
+    }
+    right
+}
+
 /// The left eigenvector by inverse iteration, from the right one.
 fn left_vector(factors: &PartialPivLu<c64>, right: &Mat<c64>) -> Mat<c64> {
     let mut left = right.clone();
@@ -300,6 +334,15 @@ fn dot(x: &Mat<c64>, y: &Mat<c64>) -> c64 {
 
 fn norm(x: &Mat<c64>) -> f64 {
     (0..x.nrows()).map(|i| x[(i, 0)].norm_sqr()).sum::<f64>().sqrt()
+}
+
+/// Whether an eigenvalue is one of a mode, of which conjugate eigenvalues are one.
+fn is_mode(value: &c64) -> bool {
+    value.im >= 0.0 && value.re.is_finite()
+}
+
+fn growing_first(a: &c64, b: &c64) -> Ordering {
+    b.re.total_cmp(&a.re).then(a.im.total_cmp(&b.im))
 }
 
 /// The cosine between two vectors, of which one may have more components.

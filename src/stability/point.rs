@@ -8,7 +8,7 @@ use super::friction::SlidingFriction;
 use super::pencil::{Clock, Pair, Pencil};
 use super::sliding::JUDGED;
 use super::solve::Bilateral;
-use super::space::{Contact, Elasticity, SlidingNode, Space, Vectors};
+use super::space::{self, Contact, Elasticity, SlidingNode, Space, Vectors};
 use super::vibration::{PAIRS, Vibration};
 use faer::{Mat, c64};
 use std::f64::consts::TAU;
@@ -53,6 +53,7 @@ pub struct FullMode {
     pub residual: f64,
     /// Estimated largest error \[1/s\] of the growth rate.
     pub error_per_s: f64,
+    /// Empty if shapes are not asked for.
     pub shape: Vec<c64>,
 }
 
@@ -152,11 +153,13 @@ pub struct Accuracy {
     pub residual: f64,
     /// Largest number of rounds of corrections.
     pub rounds: usize,
+    /// Whether modes have their shapes, which take as long as their residuals.
+    pub with_shapes: bool,
 }
 
 impl Default for Accuracy {
     fn default() -> Self {
-        Self { corrected: 4, aim: Aim::Leading, groups: 2, residual: 5e-3, rounds: 4 }
+        Self { corrected: 4, aim: Aim::Leading, groups: 2, residual: 5e-3, rounds: 4, with_shapes: false }
     }
 }
 
@@ -211,7 +214,7 @@ impl Point<'_> {
             viscous: viscous.collect(),
             damping_s: self.damping_s,
         };
-        let mut found = pencil.eigenpairs();
+        let mut found = pencil.eigenvalues();
         let candidates = if accuracy.aim == Aim::Signs { count } else { count.max(CANDIDATES) };
         if accuracy.aim == Aim::Signs {
             found.truncate(candidates);
@@ -219,7 +222,7 @@ impl Point<'_> {
             // Many values beyond the band may have a larger real part, and most of them are no modes. They must not take the places
             // of modes in the band.
             let [mut inside, mut beyond] = [0; 2];
-            found.retain(|(value, _)| {
+            found.retain(|value| {
                 let is_open = inside < candidates;
                 let taken = if self.is_in_band(*value) { &mut inside } else { &mut beyond };
                 *taken += 1;
@@ -238,7 +241,8 @@ impl Point<'_> {
         };
         let mut modes: Vec<Candidate> = Vec::new();
         for group in found.chunks(PAIRS) {
-            let pairs = polished(&pencil, group);
+            let pairs: Vec<Pair> =
+                group.iter().map(|value| pencil.polish(Clock::Continuous, *value, None)).collect();
             let seen = self.look(&vibration, elasticity, &Extension::none(), &pencil, &pairs);
             modes.extend(pairs.into_iter().enumerate().map(|(at, pair)| Candidate {
                 pair,
@@ -273,9 +277,13 @@ impl Point<'_> {
         let mut finished = Vec::new();
         for group in modes.chunks_mut(PAIRS) {
             let pairs: Vec<Pair> = group.iter().map(|mode| mode.pair.clone()).collect();
-            let [right, _] = self.expand(&Extension::none(), &pairs);
+            let right = accuracy.with_shapes.then(|| {
+                let [right, _] = self.expand(&Extension::none(), &pairs);
+                right
+            });
             finished.extend(group.iter_mut().enumerate().map(|(at, mode)| {
-                let report = || self.report(&pencil, &mode.pair, &right, at, mode.residual, mode.error_per_s);
+                let shape = || right.as_ref().map_or_else(Vec::new, |right| shape(right, at));
+                let report = || self.report(&pencil, &mode.pair, shape(), mode.residual, mode.error_per_s);
                 mode.corrected.take().unwrap_or_else(report)
             }));
         }
@@ -305,19 +313,42 @@ impl Point<'_> {
             let is_met =
                 |(at, pair): (usize, &Pair)| accuracy.is_met(pair.value, errors_per_s[at], relative[at]);
             if round == accuracy.rounds || pairs.iter().enumerate().all(is_met) {
-                let report =
-                    |(at, pair)| self.report(&pencil, pair, &right, at, relative[at], errors_per_s[at]);
+                let report = |(at, pair)| {
+                    let shape = if accuracy.with_shapes { shape(&right, at) } else { Vec::new() };
+                    self.report(&pencil, pair, shape, relative[at], errors_per_s[at])
+                };
                 return pairs.iter().enumerate().map(report).collect();
             }
-            let responses = forces.map(|force| {
-                let mut response = self.space.zeros();
-                vibration.bilateral.solve(elasticity, &force, &mut response, CORRECTION_STEPS);
-                response
-            });
+            let responses = self.responses(vibration, elasticity, forces, pairs.len());
             pencil = extension.extend(self.basis, vibration, elasticity, &pencil, &responses, pairs.len());
-            pairs = polished(&pencil, &pencil.followed(&pairs));
+            pairs = pencil.continued(&pairs);
         }
         unreachable!("the last round returns")
+    }
+
+    /// The responses of the pin to the forces, of which each has the lanes of `pairs` complex vectors. Where lanes are left for both, one
+    /// solution gives both.
+    fn responses(
+        &self,
+        vibration: &Vibration<'_>,
+        elasticity: &mut Elasticity<'_>,
+        mut forces: [Vectors; 2],
+        pairs: usize,
+    ) -> [Vectors; 2] {
+        let mut solve = |force: &Vectors| {
+            let mut response = self.space.zeros();
+            vibration.bilateral.solve(elasticity, force, &mut response, CORRECTION_STEPS);
+            response
+        };
+        if 2 * pairs > PAIRS {
+            return forces.map(|force| solve(&force));
+        }
+        let [right, left] = &mut forces;
+        space::copy_lanes(left, 0, right, 2 * pairs, 2 * pairs);
+        let both = solve(right);
+        let mut of_left = self.space.zeros();
+        space::copy_lanes(&both, 2 * pairs, &mut of_left, 0, 2 * pairs);
+        [both, of_left]
     }
 
     fn look(
@@ -347,19 +378,11 @@ impl Point<'_> {
         &self,
         pencil: &Pencil,
         pair: &Pair,
-        right: &Vectors,
-        at: usize,
+        shape: Vec<c64>,
         residual: f64,
         error_per_s: f64,
     ) -> FullMode {
-        let (real, imaginary) = (Space::lane(right, 2 * at), Space::lane(right, 2 * at + 1));
-        let mut shape: Vec<c64> = real.into_iter().zip(imaginary).map(|(re, im)| c64::new(re, im)).collect();
-        let largest =
-            shape.iter().fold(c64::new(0.0, 0.0), |a, b| if b.norm_sqr() > a.norm_sqr() { *b } else { a });
-        for value in &mut shape {
-            *value /= largest;
-        }
-        let value_in_steps = pencil.polish(self.steps, pair.value, &pair.right).value;
+        let value_in_steps = pencil.polish(self.steps, pair.value, Some(&pair.right)).value;
         FullMode { value: pair.value, value_in_steps, residual, error_per_s, shape }
     }
 
@@ -389,9 +412,16 @@ impl Point<'_> {
     }
 }
 
-/// Eigenpairs with their left eigenvectors.
-fn polished(pencil: &Pencil, pairs: &[(c64, Vec<c64>)]) -> Vec<Pair> {
-    pairs.iter().map(|(value, right)| pencil.polish(Clock::Continuous, *value, right)).collect()
+/// A mode of `right`, of which the largest component becomes 1.
+fn shape(right: &Vectors, at: usize) -> Vec<c64> {
+    let (real, imaginary) = (Space::lane(right, 2 * at), Space::lane(right, 2 * at + 1));
+    let mut shape: Vec<c64> = real.into_iter().zip(imaginary).map(|(re, im)| c64::new(re, im)).collect();
+    let largest =
+        shape.iter().fold(c64::new(0.0, 0.0), |a, b| if b.norm_sqr() > a.norm_sqr() { *b } else { a });
+    for value in &mut shape {
+        *value /= largest;
+    }
+    shape
 }
 
 /// The largest error of a growth rate, from the `change` of the eigenvalue that its residuals let expect, and its relative

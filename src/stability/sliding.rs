@@ -34,7 +34,7 @@ pub struct Mode {
     pub growth_error_per_s: f64,
     /// Whether the residual is within the tolerance.
     pub is_converged: bool,
-    /// q of the pin, three per node. The largest component is 1.
+    /// q of the pin, three per node. The largest component is 1. Empty if shapes were not asked for, but on an elastic disk.
     pub shape: Vec<Complex<f64>>,
 }
 

@@ -229,6 +229,15 @@ impl<'a, const L: usize> Elasticity<'a, L> {
     }
 }
 
+/// Copies `count` lanes of x from the lane `from` on to those of y from the lane `to` on.
+pub fn copy_lanes(x: &Vectors, from: usize, y: &mut Vectors, to: usize, count: usize) {
+    for (y, x) in y.blocks_mut().iter_mut().zip(x.blocks()) {
+        for (y, x) in y.0.iter_mut().zip(&x.0) {
+            y[to..to + count].copy_from_slice(&x[from..from + count]);
+        }
+    }
+}
+
 /// y += factor·x, with a factor for each lane.
 pub fn add(y: &mut Vectors, factor: &[f64; LANES], x: &Vectors) {
     for (y, x) in y.blocks_mut().iter_mut().zip(x.blocks()) {

@@ -21,7 +21,8 @@ use tribosweep_mechanics::stability::{Accuracy, Aim, Mode, SlidingPoint, Structu
 const AMPLITUDE: f64 = 1.0e-5;
 /// Corrections of the leading mode for a threshold: errors are of the order |λ|η² = 10⁻⁵ |λ|, which is 2 1/s. Rates change by
 /// 40 1/s over 1 % of μ.
-const CLOSE: Accuracy = Accuracy { corrected: 1, aim: Aim::Leading, groups: 2, residual: 3.0e-3, rounds: 4 };
+const CLOSE: Accuracy =
+    Accuracy { corrected: 1, aim: Aim::Leading, groups: 2, residual: 3.0e-3, rounds: 4, with_shapes: true };
 
 /// A model for small vibrations.
 pub struct Pin {

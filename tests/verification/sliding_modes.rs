@@ -22,7 +22,7 @@ use tribosweep_mechanics::units::rad_per_s_from_rpm;
 
 /// Corrections until only rounding is left.
 pub const EXACT: Accuracy =
-    Accuracy { corrected: 4, aim: Aim::Leading, groups: 5, residual: 1.0e-5, rounds: 20 };
+    Accuracy { corrected: 4, aim: Aim::Leading, groups: 5, residual: 1.0e-5, rounds: 20, with_shapes: true };
 
 /// Share of the band in which no mode is missed: the basis is incomplete near the end of its band.
 pub const SURE: f64 = 0.9;
