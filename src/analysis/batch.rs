@@ -4,6 +4,7 @@ use super::checkpoint::Unreadable;
 use super::continuation;
 use super::error::{JobError, step_count};
 use super::lanes::{AnyLanes, Ended, one_lane};
+use super::mode::ComplexMode;
 use super::nested::{Beginning, CoarseStart, coarser, cost, is_same_width};
 use super::record::JobRecord;
 use super::stability::{Structures, Verdict, judge};
@@ -404,6 +405,7 @@ impl Preparing {
                 .zip(width_m(&self.spec))
                 .map(|(coarse, own)| is_same_width(coarse, own)),
             simulated_s: record.as_ref().map_or(0.0, |record| record.simulated_s),
+            modes: if self.spec.has_run() { Vec::new() } else { modes(record.as_ref()) },
             mu_star: record.as_ref().map(|record| record.mu_star),
             frequency_hz: record.as_ref().and_then(|record| record.frequency_hz),
             start: record.and_then(|record| record.start).map(Box::new),
@@ -412,4 +414,9 @@ impl Preparing {
         let beginning = Beginning { motion, start: Some(start) };
         Prepared::GoesOn(Box::new(Ready { ticket: end.ticket, spec: self.spec, beginning }))
     }
+}
+
+fn modes(record: Option<&JobRecord>) -> Vec<ComplexMode> {
+    let stability = record.and_then(|record| record.stability.as_ref());
+    stability.map_or_else(Vec::new, |stability| stability.modes.clone())
 }

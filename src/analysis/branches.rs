@@ -4,7 +4,7 @@
 //! the line through the last points of the branch leads. Only the leading modes of each μ are known, so that a branch can
 //! begin and end between other ones.
 
-use super::record::ComplexMode;
+use super::mode::ComplexMode;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -207,8 +207,7 @@ mod tests {
     use super::*;
 
     fn mode(frequency_hz: f64, growth_rate_per_s: f64) -> ComplexMode {
-        let damping_ratio = -growth_rate_per_s / libm::hypot(TAU * frequency_hz, growth_rate_per_s);
-        ComplexMode { frequency_hz, growth_rate_per_s, damping_ratio, residual: 1e-9, is_converged: true }
+        ComplexMode::of(frequency_hz, growth_rate_per_s)
     }
 
     /// Half the difference of the stiffnesses of the two-mode model, and their mean \[1/s²\].

@@ -1,11 +1,11 @@
 //! An example of a record, for tests: it has every figure that a record can have. Tests change single fields of it.
 
 use super::above_band::AboveBand;
+use super::mode::ComplexMode;
 use super::nested::CoarseStart;
 use super::program::{Direction, ProgramWindow};
 use super::record::{
-    ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime,
-    SlidingStability,
+    ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
 };
 use super::sample::OBSERVED_NAMES;
 use super::steady::Obstacle;
@@ -66,6 +66,7 @@ impl JobRecord {
                 only_compared: false,
                 regime: Some(Regime::StickSlip),
                 same_clamp: Some(true),
+                modes: vec![ComplexMode::of(1.5e4, 90.0)],
                 simulated_s: 0.002,
                 mu_star: Some(0.3),
                 frequency_hz: Some(14_400.0),
@@ -103,11 +104,10 @@ impl SlidingStability {
             above_band: AboveBand::NotLookedAt,
             damped_above_hz: Some(4e4),
             modes: vec![ComplexMode {
-                frequency_hz: 1.5e4,
-                growth_rate_per_s: 100.0,
-                damping_ratio: -1e-3,
+                frequency_mesh_error_hz: Some(20.0),
+                growth_rate_mesh_error_per_s: Some(10.0),
                 residual: 1e-9,
-                is_converged: true,
+                ..ComplexMode::of(1.5e4, 100.0)
             }],
         }
     }

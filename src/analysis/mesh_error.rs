@@ -5,10 +5,12 @@
 //! order: some differences are small by chance. So the bound takes p = 1 and adds a share of the value that falls with the mesh. Its
 //! numbers are those that cover the errors of many scenes (docs/mesh_errors.md).
 
+use super::mode::ComplexMode;
 use super::outcome::Outcome;
 use super::record::JobRecord;
 use crate::spec::Accuracy;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// What the mesh adds to the uncertainty of a result. The bounds hold for 95 % of jobs (docs/mesh_errors.md).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -75,13 +77,20 @@ impl Bound {
     /// The bound of the error of `fine`, from the value `coarse` on elements that are `ratio` times as large.
     fn of(&self, fine: f64, coarse: f64, ratio: f64, elements: [usize; 3]) -> f64 {
         let share = self.share * Self::MESH.powi(3) / count(elements);
-        (fine - coarse).abs() / (ratio - 1.0) + share * fine.abs()
+        first_order(fine - coarse, ratio) + share * fine.abs()
     }
 }
 
 /// `scripts/mesh_errors.py` checks these numbers, and its page shows what they cover.
 const MU_STAR: Bound = Bound { share: 0.023 };
 const FREQUENCY: Bound = Bound { share: 0.004 };
+
+/// The share of the angular frequency of a mode of steady sliding in the bounds of its frequency and its growth rate. It does not fall with
+/// the mesh: where nodes lift off changes from mesh to mesh.
+const MODE_SHARE: f64 = 0.0015;
+
+/// Modes whose frequencies differ by a larger share are different ones.
+const SAME_MODE: f64 = 0.03;
 
 /// Error of μ\* of steady sliding, relative to μ\*. It depends on the mesh only by where along the curved track the pressure is.
 const STEADY_SLIDING: f64 = 2.0e-4;
@@ -144,6 +153,34 @@ impl JobRecord {
         })
     }
 
+    /// The record of modes with their errors, from those of the coarser mesh. The error of a mode that is not clearly the same one there
+    /// stays unknown.
+    #[must_use]
+    pub(super) fn with_errors_of_modes(mut self) -> Self {
+        let (Some(elements), Some(coarser), Some(stability)) =
+            (self.elements, &self.start, &mut self.stability)
+        else {
+            return self;
+        };
+        if coarser.same_clamp != Some(true) {
+            return self;
+        }
+        let ratio = libm::cbrt(count(elements) / count(coarser.elements));
+        let own = stability.modes.clone();
+        for mode in &mut stability.modes {
+            let Some(coarse) = same_mode(mode, &coarser.modes) else { continue };
+            if same_mode(coarse, &own) != Some(&*mode) {
+                continue;
+            }
+            let share_hz = MODE_SHARE * mode.frequency_hz;
+            let difference_hz = mode.frequency_hz - coarse.frequency_hz;
+            let difference_per_s = mode.growth_rate_per_s - coarse.growth_rate_per_s;
+            mode.frequency_mesh_error_hz = Some(first_order(difference_hz, ratio) + share_hz);
+            mode.growth_rate_mesh_error_per_s = Some(first_order(difference_per_s, ratio) + TAU * share_hz);
+        }
+        self
+    }
+
     /// The error of steady sliding, which the coarser mesh must not contradict.
     fn error_of_sliding(&self) -> Result<MeshError, UnknownError> {
         match self.start.as_ref().and_then(|coarser| coarser.outcome) {
@@ -155,6 +192,26 @@ impl JobRecord {
             }),
         }
     }
+}
+
+/// The mode of `modes` that is nearest to a mode, if its frequency is near enough.
+fn same_mode<'a>(mode: &ComplexMode, modes: &'a [ComplexMode]) -> Option<&'a ComplexMode> {
+    let distance = |other: &ComplexMode| {
+        let angular_per_s = TAU * (other.frequency_hz - mode.frequency_hz);
+        libm::hypot(angular_per_s, other.growth_rate_per_s - mode.growth_rate_per_s)
+    };
+    let is_near = |other: &&ComplexMode| {
+        (other.frequency_hz - mode.frequency_hz).abs()
+            <= SAME_MODE * mode.frequency_hz.min(other.frequency_hz)
+    };
+    let is_vibration = |mode: &&ComplexMode| mode.frequency_hz > 0.0;
+    let near = modes.iter().filter(is_vibration).filter(is_near);
+    near.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+/// The error that a difference of two meshes leaves if it is of first order.
+fn first_order(difference: f64, ratio: f64) -> f64 {
+    difference.abs() / (ratio - 1.0)
 }
 
 fn count(elements: [usize; 3]) -> f64 {

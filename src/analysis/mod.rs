@@ -39,6 +39,7 @@ pub mod lane;
 pub mod lanes;
 pub mod lines;
 mod mesh_error;
+mod mode;
 pub mod nested;
 mod noted;
 mod outcome;
@@ -59,11 +60,11 @@ pub use error::JobError;
 pub use job::{JobObserver, Unobserved, on_final_mesh, solve};
 pub use lanes::Moment;
 pub use mesh_error::{MeshError, UnknownError};
+pub use mode::ComplexMode;
 pub use nested::CoarseStart;
 pub use noted::Noted;
 pub use record::{
-    ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime,
-    SlidingStability,
+    ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
 };
 pub use stability::Structures;
 pub use steady::Obstacle;

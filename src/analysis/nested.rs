@@ -3,9 +3,10 @@
 //! The coarser run is a part of the job. Its specification follows from that of the job alone, and it starts in the same way
 //! from a still coarser mesh. If it does not end in a limit cycle, the job starts from rest.
 
+use super::mode::ComplexMode;
 use super::outcome::{Outcome, Regime};
 use crate::solver::{Model, PinMotion};
-use crate::spec::{JobSpec, Numerics, StabilityMethod};
+use crate::spec::{JobSpec, Numerics, StabilityMethod, Start};
 use serde::{Deserialize, Serialize};
 
 /// Time of a run on a coarser mesh over the time of a run on the job's mesh that simulates as long: it has fewer nodes and fewer steps.
@@ -35,6 +36,9 @@ pub struct CoarseStart {
     /// Whether the clamp on that mesh is as wide as on the job's own. Earlier versions did not keep it.
     #[serde(default)]
     pub same_clamp: Option<bool>,
+    /// The modes there, if the job computes modes only.
+    #[serde(default)]
+    pub modes: Vec<ComplexMode>,
     /// Macroscopic friction coefficient μ* on the coarser mesh.
     pub mu_star: Option<f64>,
     /// Fundamental frequency \[Hz\] on the coarser mesh.
@@ -98,8 +102,17 @@ pub fn coarser(spec: &JobSpec) -> Option<JobSpec> {
     // Where the clamp is another one, a run can start from the motion, but its difference says nothing of the mesh.
     let best = best.or((spec.accuracy.is_none() && !found.is_empty()).then_some(0))?;
     let mut coarse = found.swap_remove(best).0;
+    let is_level = spec.accuracy.is_some() && spec.has_run();
+    let is_start = spec.has_run() && spec.starts_in_motion();
+    if !(is_level || is_start) {
+        // Two meshes give an error.
+        coarse.run.start = Start::Rest;
+    }
+    if !is_level {
+        coarse.accuracy = None;
+    }
     // The coarser run of a job that asks for an accuracy may be its last one. On the coarsest mesh it never is.
-    if spec.accuracy.is_none() || coarser(&coarse).is_none() {
+    if spec.has_run() && (!is_level || coarser(&coarse).is_none()) {
         coarse.stability = StabilityMethod::Simulate;
     }
     Some(coarse)

@@ -1,6 +1,7 @@
 //! The record of one job: all results of its run.
 
 use super::above_band::AboveBand;
+use super::mode::ComplexMode;
 use super::nested::CoarseStart;
 pub use super::outcome::{Outcome, Regime};
 use super::program::ProgramWindow;
@@ -70,21 +71,6 @@ pub struct ElasticDisk {
     /// Largest residual of a solve: the error of a force in its own row of the contact equations, over the
     /// largest force.
     pub residual_max: f64,
-}
-
-/// A complex mode of small vibrations about steady sliding.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ComplexMode {
-    /// Frequency \[Hz\].
-    pub frequency_hz: f64,
-    /// Growth rate \[1/s\]; negative if the mode decays.
-    pub growth_rate_per_s: f64,
-    /// Damping ratio ζ = −Re λ/|λ|.
-    pub damping_ratio: f64,
-    /// Residual of the full problem, relative.
-    pub residual: f64,
-    /// Whether the residual is within the tolerance.
-    pub is_converged: bool,
 }
 
 /// What the eigenvalues of steady sliding say.

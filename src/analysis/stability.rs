@@ -4,9 +4,10 @@ use super::above_band::AboveBand;
 use super::drive::drive;
 use super::error::{JobError, step_count};
 use super::lane::elastic_disk;
+use super::mode::ComplexMode;
 use super::nested::Beginning;
 use super::noted::Noted;
-use super::record::{ComplexMode, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability};
+use super::record::{EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability};
 use super::sample::OBSERVED_NAMES;
 use crate::solver::interface::SlaveNode;
 use crate::solver::interface::solve::Solves;
@@ -113,7 +114,9 @@ pub fn judge(
                 structures.with(spec, model, |structure| structure.point(model, &drive(spec), MODES))?;
             let is_stable = point.modes.first().is_some_and(|mode| growth(mode) < 0.0);
             let outcome = if is_stable { Outcome::Decayed } else { Outcome::Unstable };
-            let record = record(spec, model, &point, outcome);
+            let mut record = record(spec, model, &point, outcome);
+            record.start.clone_from(&beginning.start);
+            let record = record.with_errors_of_modes();
             match record.non_finite_number() {
                 None => Ok(Verdict::Decided(Box::new(record))),
                 Some(figure) => Err(JobError::NotFinite { figure }),
@@ -180,12 +183,12 @@ fn complex_mode(mode: &Mode) -> ComplexMode {
     let size = libm::hypot(eigenvalue.re, eigenvalue.im);
     // Rounding gives an eigenvalue without a vibration a small imaginary part of either sign.
     let vibrates = eigenvalue.im > NO_VIBRATION * size;
+    let frequency_hz = if vibrates { eigenvalue.im / TAU } else { 0.0 };
     ComplexMode {
-        frequency_hz: if vibrates { eigenvalue.im / TAU } else { 0.0 },
-        growth_rate_per_s: eigenvalue.re,
         damping_ratio: if size == 0.0 { 0.0 } else { -eigenvalue.re / size },
         residual: mode.residual,
         is_converged: mode.is_converged,
+        ..ComplexMode::of(frequency_hz, eigenvalue.re)
     }
 }
 

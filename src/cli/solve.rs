@@ -28,7 +28,7 @@ pub(crate) struct Args {
     preset: Option<Preset>,
     /// Ask for an error of μ* by the mesh, for example 1%: each job goes from mesh to mesh until it is reached, instead of the mesh of the
     /// study. `--set` can give the finest mesh.
-    #[arg(long, value_name = "ERROR", value_parser = foreground::parse_accuracy)]
+    #[arg(long, value_name = "ERROR", value_parser = foreground::parse_accuracy, allow_hyphen_values = true)]
     accuracy: Option<(String, String)>,
     /// Write the time history as CSV: load, total normal and tangential forces (clamp_tangential_n at the
     /// clamp, contact_tangential_n and mu_eq at the contact), numbers of nodes in each state, and displacement,

@@ -22,7 +22,7 @@ pub(crate) struct StudyArgs {
     preset: Option<Preset>,
     /// Ask for an error of μ* by the mesh, for example 1%: each job goes from mesh to mesh until it is reached, instead of the mesh of the
     /// study. `--set` can give the finest mesh.
-    #[arg(long, value_name = "ERROR", value_parser = parse_accuracy)]
+    #[arg(long, value_name = "ERROR", value_parser = parse_accuracy, allow_hyphen_values = true)]
     accuracy: Option<(String, String)>,
     /// Instead of what the study says about further jobs, continue each of its points N times with random velocities, to find its
     /// limit cycles. The name becomes STUDY-basins.

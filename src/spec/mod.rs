@@ -119,7 +119,9 @@ impl JobSpec {
         }
         if let Some(accuracy) = self.accuracy {
             accuracy.check(&mut found);
-            self.check_levels(&mut found);
+            if self.has_run() {
+                self.check_levels(&mut found);
+            }
         }
         if let Some(continuation) = &self.continuation {
             continuation.check(&mut found);
@@ -141,14 +143,23 @@ impl JobSpec {
     ///
     /// A mesh of half as many elements in each direction is best. It may have no row of nodes at the clamp's edge, and two thirds one.
     pub fn coarser_elements(&self) -> Vec<[usize; 3]> {
-        let is_asked =
-            self.accuracy.is_some() || self.run.start == Start::Compared || self.starts_in_motion();
-        if !is_asked || !self.has_run() || self.continuation.is_some() || !self.scene.program.is_constant() {
+        // An elastic disk has a mesh of its own, so that the coarser run of the pin says less and takes nearly as long.
+        let is_rigid = self.scene.disk.kind == DiskKind::Rigid;
+        let is_asked = match self.run.start {
+            _ if self.accuracy.is_some() && self.has_run() => true,
+            Start::Rest => false,
+            Start::Nested => is_rigid || self.starts_in_motion(),
+            Start::Compared => is_rigid || self.has_run(),
+        };
+        let has_steady_state = !self.has_run() || self.scene.program.is_constant();
+        if !is_asked || !has_steady_state || self.continuation.is_some() {
             return Vec::new();
         }
         let Some(own) = self.scene.pin.own_elements() else { return Vec::new() };
         let [half, two_thirds] = [(1, 2), (2, 3)].map(|(share, of)| own.map(|n| (share * n).div_ceil(of)));
-        let is_enough = half.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS);
+        let is_level = self.accuracy.is_some() && self.has_run();
+        let fewest = if is_level || self.starts_in_motion() { FEWEST_TO_START } else { FEWEST_TO_COMPARE };
+        let is_enough = half.iter().all(|&n| n >= fewest);
         if is_enough { vec![half, two_thirds] } else { Vec::new() }
     }
 
@@ -165,9 +176,7 @@ impl JobSpec {
 
     /// What an accuracy needs: a steady state, and meshes that the program makes.
     fn check_levels(&self, found: &mut Violations) {
-        let refused = if !self.has_run() {
-            "absent for complex modes, which have no run"
-        } else if self.scene.pin.own_elements().is_none() {
+        let refused = if self.scene.pin.own_elements().is_none() {
             "absent for a mesh from a file: the program makes no finer one of it"
         } else if !self.scene.program.is_constant() {
             "absent with scene.program: such a run has no steady state"
@@ -175,6 +184,8 @@ impl JobSpec {
             "absent in a study with `continue`: its jobs begin in motions on one mesh"
         } else if self.scene.disk.kind == DiskKind::Elastic {
             "absent on an elastic disk, whose mesh has an error of its own"
+        } else if !self.run.stop_early {
+            "absent with run.stop_early = false: each mesh has as long a run as its own error needs"
         } else if self.numerics.time_step_s.is_some() {
             "absent with numerics.time_step_s: each mesh has its own time step"
         } else {
@@ -451,7 +462,9 @@ const SHORTEST_WINDOW: f64 = 50.0;
 
 /// Fewest elements of a coarser mesh in each direction. From 6 × 8 × 5 elements to 12 × 15 × 10 the start saved hardly any
 /// time: the limit cycles differ too much.
-const FEWEST_COARSER_ELEMENTS: usize = 6;
+const FEWEST_TO_START: usize = 6;
+/// The same where the coarser mesh gives no start and only an error.
+const FEWEST_TO_COMPARE: usize = 5;
 
 /// Largest Young's modulus in single precision.
 const STIFFEST_SINGLE_PA: f64 = 1.0e16;

@@ -88,7 +88,8 @@ pub enum Start {
     #[default]
     Rest,
     /// The limit cycle that the same scene reaches on a mesh of half as many elements in each direction. The run starts from
-    /// rest if there is no such cycle. If two limit cycles are possible, the run may reach another one than from rest.
+    /// rest if there is no such cycle, or if a motion on another mesh is not enough to start from; that run then says how large the error of
+    /// the mesh is. If two limit cycles are possible, the run may reach another one than from rest.
     Nested,
     /// Rest, after a run of the same scene on that coarser mesh, which says how large the error of the mesh is.
     Compared,

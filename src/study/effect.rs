@@ -14,7 +14,19 @@ pub(super) fn without_effect(spec: &JobSpec) -> Vec<&'static str> {
         (spec.scene.disk.kind == DiskKind::Rigid, &["/scene/disk/ring"]),
         (spec.numerics.time_step_s.is_some(), &["/numerics/safety_factor"]),
         (!has_run && !spec.modes_need_time_step(), &["/numerics/safety_factor", "/numerics/time_step_s"]),
-        (!has_run, &["/numerics/precision", "/run", "/detection", "/scene/load/ramp_s"]),
+        (
+            !has_run,
+            &[
+                "/numerics/precision",
+                "/run/limit_s",
+                "/run/stop_early",
+                "/run/average_last_fraction",
+                "/run/window_s",
+                "/detection",
+                "/scene/load/ramp_s",
+                "/accuracy",
+            ],
+        ),
         (has_run && !spec.eigenvalues_may_decide(), &["/stability"]),
         // Nothing looks for a steady state.
         (
@@ -39,7 +51,7 @@ fn has_start(spec: &JobSpec) -> bool {
     let has_coarser = || !spec.coarser_elements().is_empty();
     match spec.run.start {
         Start::Rest => true,
-        Start::Nested => spec.starts_in_motion() && has_coarser(),
+        Start::Nested => (spec.accuracy.is_none() || spec.starts_in_motion()) && has_coarser(),
         Start::Compared => spec.accuracy.is_none() && has_coarser(),
     }
 }

@@ -216,6 +216,7 @@ fn accurate_jobs(precision: Precision) -> Vec<JobSpec> {
     for (i, job) in jobs.iter_mut().enumerate() {
         job.scene.pin.elements = [24, 28, 28];
         job.run.start = if i % 4 == 1 { Start::Rest } else { Start::Nested };
+        job.run.stop_early = true;
         job.run.limit_s = 0.0012 + 1.0e-4 * i as f64;
         job.numerics.beta2 = 0.5;
         job.accuracy = Some(Accuracy { mu_star: [0.2, 1.0e-4][i % 2] });

@@ -2,9 +2,14 @@
 
 use crate::signals::coarse;
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use tribosweep_mechanics::analysis::{
-    CoarseStart, JobRecord, MeshError, Outcome, Regime, UnknownError, Unobserved, solve,
+    CoarseStart, ComplexMode, JobRecord, MeshError, Outcome, Regime, UnknownError, Unobserved, solve,
 };
+use tribosweep_mechanics::spec::{FrictionLaw, JobSpec, StabilityMethod, Start};
+
+/// The share of the angular frequency in the bound of growth rates.
+const GROWTH_SHARE: f64 = 0.0015;
 
 /// A limit cycle on a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +33,7 @@ fn record(template: &JobRecord, fine: Cycle, coarse: Cycle) -> JobRecord {
         simulated_s: 0.005,
         regime: Some(coarse.regime),
         same_clamp: Some(true),
+        modes: Vec::new(),
         mu_star: Some(coarse.mu_star),
         frequency_hz: Some(coarse.frequency_hz),
         start: None,
@@ -107,6 +113,66 @@ fn what_cannot_be_compared_is_unknown() {
     let slides = JobRecord { outcome: Outcome::Decayed, ..alone };
     let of_sliding = MeshError { mu_star: 2.0e-4 * 0.3, frequency_hz: None, mu_star_extrapolated: None };
     assert_eq!(slides.mesh_error(), Ok(of_sliding));
+}
+
+/// Protects: modes have errors from the same modes on the coarser mesh if their job is to be compared, and keep all bits beside that. A mode
+/// without a partner has none, and a job from rest neither.
+#[test]
+fn modes_have_errors_of_their_own() {
+    let mut spec = JobSpec { stability: StabilityMethod::Modes, ..JobSpec::default() };
+    spec.scene.contact.mu = 0.3;
+    spec.scene.clamp.width_m = 0.002;
+    spec.run.start = Start::Compared;
+    let of = |spec: &JobSpec| solve(spec, &mut Unobserved).unwrap();
+    let compared = of(&spec);
+    spec.run.start = Start::Rest;
+    let alone = of(&spec);
+    spec.scene.pin.elements = [6, 8, 5];
+    let coarse = of(&spec);
+    let modes = |record: &JobRecord| record.stability.clone().unwrap().modes;
+    assert!(alone.start.is_none());
+    assert_eq!(compared.start.as_ref().unwrap().elements, [6, 8, 5]);
+    let ratio = f64::cbrt(1800.0 / 240.0);
+    let mut known = 0;
+    for (own, same) in modes(&compared).iter().zip(&modes(&alone)) {
+        assert_eq!((same.frequency_mesh_error_hz, same.growth_rate_mesh_error_per_s), (None, None));
+        assert_eq!((own.frequency_hz, own.growth_rate_per_s), (same.frequency_hz, same.growth_rate_per_s));
+        let Some(error_per_s) = own.growth_rate_mesh_error_per_s else { continue };
+        known += 1;
+        let is_partner = |other: &ComplexMode| {
+            let difference_per_s = (own.growth_rate_per_s - other.growth_rate_per_s).abs();
+            let share_per_s = error_per_s - difference_per_s / (ratio - 1.0);
+            (share_per_s / (TAU * own.frequency_hz) / GROWTH_SHARE - 1.0).abs() < 1.0e-9
+        };
+        assert!(modes(&coarse).iter().any(is_partner), "{own:?}");
+    }
+    // The leading mode has a partner.
+    assert!(known >= 3 && modes(&compared)[0].growth_rate_mesh_error_per_s.is_some(), "{known}");
+    assert!(known < modes(&compared).len());
+}
+
+/// Protects: a job runs on a coarser mesh first wherever it is asked to and there is one: also where it cannot start from the motion there,
+/// with a holder or a law that uses the past, where a start from rest needs the run for its error only.
+#[test]
+fn a_coarser_mesh_is_there_where_it_is_asked_for() {
+    let of = |change: fn(&mut JobSpec)| {
+        let mut spec = JobSpec::default();
+        spec.scene.pin.elements = [24, 30, 20];
+        spec.run.start = Start::Nested;
+        change(&mut spec);
+        (spec.coarser_elements().first().copied(), spec.starts_in_motion())
+    };
+    let half = Some([12, 15, 10]);
+    assert_eq!(of(|_| {}), (half, true));
+    assert_eq!(of(|spec| spec.run.start = Start::Rest), (None, false));
+    assert_eq!(of(|spec| spec.scene.contact.law = FrictionLaw::StaticKinetic), (half, false));
+    // Ten elements are too few to start from five, and enough to compare with them.
+    let draft = |start| {
+        let mut spec = JobSpec::default();
+        spec.run.start = start;
+        spec.coarser_elements().first().copied()
+    };
+    assert_eq!([draft(Start::Nested), draft(Start::Compared)], [None, Some([6, 8, 5])]);
 }
 
 /// The limit cycles of each job of docs/mesh_errors.csv on its meshes, by the multiple of its coarsest one.

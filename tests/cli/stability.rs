@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use crate::support::{ExportRow, Folder, rows, small, stderr, stdout, wall_times};
 
-const COLUMNS: &str = "omega_rpm,mu,mode,frequency_hz,growth_rate_1_s,damping_ratio,residual,converged,\
-contact_nodes,lifted_nodes,band_hz,above_band";
+const COLUMNS: &str = "omega_rpm,mu,mode,frequency_hz,frequency_mesh_error_hz,growth_rate_1_s,\
+growth_rate_mesh_error_1_s,damping_ratio,residual,converged,contact_nodes,lifted_nodes,band_hz,above_band";
 
 fn number(row: &ExportRow, column: &str) -> f64 {
     row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))

@@ -12,7 +12,7 @@ use tribosweep_output::publish::chart::palette::DARK;
 use tribosweep_output::publish::chart::{At, Axis, Chart, Layer, Panel, Pen, Point, Sample, Shape};
 use tribosweep_output::report::figure::{Plot, StabilityPlot, figures, figures_with, stability_figures};
 use tribosweep_output::report::{
-    Along, JobRow, Report, RowState, StabilityPoint, View, write, write_stability,
+    Along, JobRow, Report, RowState, StabilityPoint, View, thresholds_table, write, write_stability,
 };
 
 const SPEEDS: [f64; 4] = [1.0, 5.0, 20.0, 100.0];
@@ -24,8 +24,7 @@ fn mu_c(omega_rpm: f64) -> f64 {
 }
 
 fn mode(frequency_hz: f64, growth_rate_per_s: f64) -> ComplexMode {
-    let damping_ratio = -growth_rate_per_s / (TAU * frequency_hz);
-    ComplexMode { frequency_hz, growth_rate_per_s, damping_ratio, residual: 1e-9, is_converged: true }
+    ComplexMode::of(frequency_hz, growth_rate_per_s)
 }
 
 /// A point with a mode that grows above its threshold, and one that always decays.
@@ -38,6 +37,22 @@ fn point(omega_rpm: f64, mu: f64) -> StabilityPoint {
 
 fn points() -> Vec<StabilityPoint> {
     SPEEDS.into_iter().flat_map(|omega| FRICTION.map(|mu| point(omega, mu))).collect()
+}
+
+/// Protects: a threshold has the error of the growth rates beside it over their slope, in the file and in words, and none where one of
+/// them is unknown. Growth rates that are wrong by 20 1/s with a slope of 1000 1/s move it by 0.02.
+#[test]
+fn a_threshold_has_the_error_of_its_growth_rates() {
+    let with_error = |errors: [Option<f64>; 2]| {
+        let mut points: Vec<StabilityPoint> = FRICTION.map(|mu| point(1.0, mu)).into();
+        for (error, point) in errors.into_iter().zip(&mut points[1..3]) {
+            point.stability.modes[0].growth_rate_mesh_error_per_s = error;
+        }
+        let (table, _) = thresholds_table(&points, &Along::mu());
+        table.lines[0][1].clone()
+    };
+    assert_eq!(with_error([Some(20.0), Some(10.0)]), "0.22 ± 0.02");
+    assert_eq!(with_error([Some(20.0), None]), "0.22");
 }
 
 fn with_points<'a>(rows: &'a [JobRow], points: &'a [StabilityPoint]) -> Report<'a> {
@@ -219,7 +234,7 @@ fn the_stability_has_a_report_of_its_own() {
     assert_eq!(written.len(), expected.len() - 1);
 
     let modes = read("modes.csv");
-    let header = "omega_rpm,mu,mode,frequency_hz,growth_rate_1_s,damping_ratio,residual,converged,contact_nodes,lifted_nodes,band_hz,above_band";
+    let header = "omega_rpm,mu,mode,frequency_hz,frequency_mesh_error_hz,growth_rate_1_s,growth_rate_mesh_error_1_s,damping_ratio,residual,converged,contact_nodes,lifted_nodes,band_hz,above_band";
     assert_eq!(modes.lines().next(), Some(header));
     assert_eq!(modes.lines().count(), 1 + 2 * points.len());
     assert_eq!(modes.matches(",false,30,2,").count(), 1);
@@ -228,6 +243,7 @@ fn the_stability_has_a_report_of_its_own() {
     let columns = [
         "omega_rpm",
         "mu_c",
+        "mu_c_mesh_error",
         "mu_below",
         "mu_above",
         "mu_end",
@@ -241,12 +257,12 @@ fn the_stability_has_a_report_of_its_own() {
     assert_eq!(lines[0], columns);
     let near = |text: &str, expected: f64| (text.parse::<f64>().expect("a number") - expected).abs() < 1e-9;
     assert!(
-        near(lines[1][1], mu_c(1.0)) && lines[1][2..9] == ["0.2", "0.225", "", "", "", "15000", "true"],
+        near(lines[1][1], mu_c(1.0)) && lines[1][2..10] == ["", "0.2", "0.225", "", "", "", "15000", "true"],
         "{thresholds}"
     );
-    assert!(near(lines[2][1], mu_c(5.0)) && lines[2][8] == "false", "{thresholds}");
-    assert_eq!(lines[3][..9], ["20", "", "", "0.1", "", "", "", "15000", "true"]);
-    assert_eq!(lines[4][..9], ["100", "", "0.5", "", "", "", "", "", ""]);
+    assert!(near(lines[2][1], mu_c(5.0)) && lines[2][9] == "false", "{thresholds}");
+    assert_eq!(lines[3][..10], ["20", "", "", "", "0.1", "", "", "", "15000", "true"]);
+    assert_eq!(lines[4][..10], ["100", "", "", "0.5", "", "", "", "", "", ""]);
 
     let page = read("stability.html");
     for text in [
@@ -346,7 +362,10 @@ fn panels_are_speeds_and_sheets_are_combinations() {
         )
     );
     let lines = fs::read_to_string(folder.path().join("thresholds.csv")).expect("the thresholds");
-    assert!(lines.starts_with("omega_rpm,load_n,mu_c,") && lines.lines().count() == 1 + 22, "{lines}");
+    assert!(
+        lines.starts_with("omega_rpm,load_n,mu_c,mu_c_mesh_error,") && lines.lines().count() == 1 + 22,
+        "{lines}"
+    );
     let maps = charts(&points, StabilityPlot::Map);
     assert_eq!(
         maps.iter().map(|chart| chart.title.as_str()).collect::<Vec<_>>(),

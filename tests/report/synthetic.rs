@@ -106,6 +106,7 @@ pub fn after(mut row: JobRow, coarser_mu_star: f64, coarser_hz: f64) -> JobRow {
             only_compared: false,
             regime: Some(record.regime),
             same_clamp: Some(true),
+            modes: Vec::new(),
             simulated_s: 0.002,
             mu_star: Some(coarser_mu_star),
             frequency_hz: Some(coarser_hz),

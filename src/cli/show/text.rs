@@ -15,12 +15,13 @@ use serde_json::Value;
 const DIGITS: usize = 6;
 
 /// The parts of a job's inputs, with their headings.
-const PARTS: [(&str, &str); 5] = [
+const PARTS: [(&str, &str); 6] = [
     ("scene", "Inputs: scene"),
     ("numerics", "Inputs: numerics"),
     ("run", "Inputs: run"),
     ("detection", "Inputs: detection"),
     ("stability", "Inputs: stability"),
+    ("accuracy", "Inputs: accuracy"),
 ];
 
 /// The columns that the head or the provenance of the text has.

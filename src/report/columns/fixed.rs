@@ -81,7 +81,7 @@ pub static FURTHER: &[ExportColumn] = &[
     quantity("window_start_s", Run, BY_MEANING, "simulated time at which the window of all averages begins; it ends with the run", |row| of(row, |record| record.window_start_s)),
     quantity("crossings_per_cycle", Run, titled("section crossings per limit cycle"), "crossings of N = F in one limit cycle", |row| of(row, |record| record.crossings_per_cycle)),
     quantity("time_step_limit_s", Run, BY_MEANING, "stability limit of the time step", |row| of(row, |record| record.time_step_limit_s)),
-    detail("accuracy_reached", Result, "whether mu_star_mesh_error is as small as the job asks for, where it asks for an accuracy", |row| of(row, |record| record.accuracy_reached)),
+    detail("accuracy_reached", Result, "whether the job ran on two meshes and mu_star_mesh_error is as small as it asks for, where it asks for an accuracy", |row| of(row, |record| record.accuracy_reached)),
     quantity("mesh_elements_x", Run, BY_MEANING, "elements in x of the mesh that the result is from", |row| elements(row, 0)),
     quantity("mesh_elements_y", Run, BY_MEANING, "elements in y of that mesh", |row| elements(row, 1)),
     quantity("mesh_elements_z", Run, BY_MEANING, "elements in z of that mesh", |row| elements(row, 2)),

@@ -76,8 +76,9 @@ static OF_RESIDUALS: [&ExportColumn; 2] = columns(["energy_residual", "identity_
 pub(super) const RUN_TIMES: DataFile = DataFile::new("run_times", &OF_RUN_TIMES);
 static OF_RUN_TIMES: [&ExportColumn; 4] = columns(["wall_s", "steps", "simulated_s", "time_step_s"]);
 
-static OF_MU_STAR: [&ExportColumn; 4] = columns(["mu_star", "mu_star_se", "mu_star_contact", "regime"]);
-static OF_FREQUENCY: [&ExportColumn; 2] = columns(["frequency_hz", "regime"]);
+static OF_MU_STAR: [&ExportColumn; 5] =
+    columns(["mu_star", "mu_star_se", "mu_star_mesh_error", "mu_star_contact", "regime"]);
+static OF_FREQUENCY: [&ExportColumn; 3] = columns(["frequency_hz", "frequency_mesh_error_hz", "regime"]);
 static OF_REGIME: [&ExportColumn; 2] = columns(["regime", "error"]);
 static OF_SHARES: [&ExportColumn; 4] = columns(["stick_share", "slip_share", "separated_share", "regime"]);
 static OF_GROWTH_RATE: [&ExportColumn; 2] = columns(["growth_rate_per_s", "regime"]);

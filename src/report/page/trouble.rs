@@ -60,6 +60,7 @@ fn not_periodic(row: &JobRow) -> Option<Text> {
 fn not_accurate(row: &JobRow) -> Option<Text> {
     let record = row.record().filter(|record| record.accuracy_reached == Some(false))?;
     let words = match record.mesh_error() {
+        Ok(_) if record.start.is_none() => "there is no coarser mesh to compare with".to_owned(),
         Ok(own) => format!(
             "the error of μ* may be {}, {} % of it",
             value::significant(own.mu_star, 2),

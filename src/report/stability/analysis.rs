@@ -256,7 +256,6 @@ mod tests {
     use crate::analysis::{AboveBand, SlidingStability};
     use crate::report::figure::StabilityPlot::{LockIn, Map, Thresholds};
     use crate::report::figure::stability_figures;
-    use std::f64::consts::TAU;
 
     fn of(omega_rpm: f64, mu: f64, further: &[(&str, f64)]) -> Parameters {
         let further = further.iter().map(|(name, value)| ((*name).to_owned(), (*value).into()));
@@ -264,12 +263,8 @@ mod tests {
     }
 
     fn point(omega_rpm: f64, mu: f64, modes: &[(f64, f64)]) -> StabilityPoint {
-        let mode = |(frequency_hz, growth_rate_per_s): &(f64, f64)| ComplexMode {
-            frequency_hz: *frequency_hz,
-            growth_rate_per_s: *growth_rate_per_s,
-            damping_ratio: -growth_rate_per_s / (TAU * frequency_hz),
-            residual: 1e-9,
-            is_converged: true,
+        let mode = |&(frequency_hz, growth_rate_per_s): &(f64, f64)| {
+            ComplexMode::of(frequency_hz, growth_rate_per_s)
         };
         let modes = modes.iter().map(mode).collect();
         let stability = SlidingStability { mu_star: mu, modes, ..SlidingStability::example() };

@@ -25,6 +25,7 @@ pub(super) fn onsets_of(branch: usize, points: &Branch) -> Vec<Onset> {
                 ends,
                 frequency_hz,
                 is_converged,
+                mesh_error: None,
                 family,
             });
         };
@@ -32,6 +33,14 @@ pub(super) fn onsets_of(branch: usize, points: &Branch) -> Vec<Onset> {
         // Two points of a zip may share a place.
         let width = above.mu - below.mu;
         let share = if width > 0.0 { (mu - below.mu) / width } else { 0.0 };
+        let [error, slope] = [
+            below
+                .mode
+                .growth_rate_mesh_error_per_s
+                .zip(above.mode.growth_rate_mesh_error_per_s)
+                .map(|(a, b)| a.max(b)),
+            (width > 0.0).then(|| (above.mode.growth_rate_per_s - below.mode.growth_rate_per_s) / width),
+        ];
         let (from, to) = (below.mode.frequency_hz, above.mode.frequency_hz);
         Some(Onset {
             branch,
@@ -41,6 +50,7 @@ pub(super) fn onsets_of(branch: usize, points: &Branch) -> Vec<Onset> {
             ends,
             frequency_hz: from + share * (to - from),
             is_converged: below.mode.is_converged && above.mode.is_converged && ends_converged,
+            mesh_error: error.zip(slope).map(|(error, slope)| error / slope),
             family: 0,
         })
     };

@@ -43,6 +43,9 @@ pub(in crate::report) struct Onset {
     pub frequency_hz: f64,
     /// Whether the eigenvalues on both sides are converged.
     pub is_converged: bool,
+    /// Bound of the error of the threshold that the mesh makes: the larger one of the growth rates beside it, over their slope. None if
+    /// it is unknown, or if there is no threshold.
+    pub mesh_error: Option<f64>,
     /// Index of the family.
     pub family: usize,
 }
@@ -97,6 +100,8 @@ pub(in crate::report) struct Interval {
     pub frequency_hz: f64,
     /// Whether the eigenvalues at its beginning are converged.
     pub is_converged: bool,
+    /// Bound of the error of its beginning that the mesh makes; none if it is unknown.
+    pub mesh_error: Option<f64>,
 }
 
 /// An end of a range in which sliding is unstable.
@@ -154,6 +159,7 @@ pub(super) fn intervals(leading: &[(f64, Option<ComplexMode>)], onsets: &[Onset]
                     to: Edge::Outside(at),
                     frequency_hz: first.map_or(mode.frequency_hz, |onset| onset.frequency_hz),
                     is_converged: first.map_or(mode.is_converged && is_sure, |onset| onset.is_converged),
+                    mesh_error: first.and_then(|onset| onset.mesh_error),
                 });
             }
             (Some(_), Some(interval)) => interval.to = Edge::Outside(at),
@@ -190,8 +196,15 @@ impl Speed {
     /// `unit` is that of the parameter of the thresholds.
     pub fn threshold_in_words(&self, unit: &str) -> String {
         let text = |at: f64| value::quantity(at, unit);
-        match self.intervals.first().map(|interval| interval.from) {
-            Some(Edge::At(at)) if !self.without_modes.iter().any(|mu| *mu < at) => text(at),
+        let with_unit = |number: &str| format!("{number} {unit}").trim_end().to_owned();
+        let first = self.intervals.first();
+        match first.map(|interval| interval.from) {
+            Some(Edge::At(at)) if !self.without_modes.iter().any(|mu| *mu < at) => {
+                let error = first.and_then(|interval| interval.mesh_error);
+                let with =
+                    |error: f64| format!("{} ± {}", text(at), with_unit(&value::significant(error, 2)));
+                error.map_or_else(|| text(at), with)
+            }
             Some(Edge::At(at) | Edge::Outside(at) | Edge::Unknown(at)) => format!("≤ {}", text(at)),
             None if self.mus[1].is_finite() && self.without_modes.is_empty() => {
                 format!("> {}", text(self.mus[1]))
@@ -231,8 +244,7 @@ mod tests {
     use super::*;
 
     fn mode(growth_rate_per_s: f64) -> ComplexMode {
-        let frequency_hz = 1.0e4;
-        ComplexMode { frequency_hz, growth_rate_per_s, damping_ratio: 0.0, residual: 0.0, is_converged: true }
+        ComplexMode::of(1.0e4, growth_rate_per_s)
     }
 
     fn of(rates: &[f64]) -> Vec<(Edge, Edge)> {
@@ -268,6 +280,7 @@ mod tests {
             ends,
             frequency_hz: 9.0e3,
             is_converged: true,
+            mesh_error: None,
             family: 0,
         };
         let leading = [(0.0, Some(mode(-1.0))), (1.0, Some(mode(1.0))), (2.0, Some(mode(-1.0)))];

@@ -21,11 +21,13 @@ struct NumberedMode<'a> {
 }
 
 #[rustfmt::skip]
-fn of_mode<'a>() -> [Column<NumberedMode<'a>>; 10] {
+fn of_mode<'a>() -> [Column<NumberedMode<'a>>; 12] {
     [
         Column::new("mode", "", "number of the mode, from 1, the fastest growing one first", |of| of.number.into()),
         Column::new("frequency_hz", "Hz", "its frequency", |of| of.mode.frequency_hz.into()),
+        Column::new("frequency_mesh_error_hz", "Hz", "bound of the error that the mesh makes; empty if it is unknown", |of| of.mode.frequency_mesh_error_hz.into()),
         Column::new("growth_rate_1_s", "1/s", "growth rate; negative: it decays", |of| of.mode.growth_rate_per_s.into()),
+        Column::new("growth_rate_mesh_error_1_s", "1/s", "bound of the error that the mesh makes; empty if it is unknown", |of| of.mode.growth_rate_mesh_error_per_s.into()),
         Column::new("damping_ratio", "", "ζ = −Re λ/|λ|", |of| of.mode.damping_ratio.into()),
         Column::new("residual", "", "relative residual of the mode in the full problem", |of| of.mode.residual.into()),
         Column::new("converged", "", "whether the residual is within its tolerance", |of| of.mode.is_converged.into()),
@@ -71,13 +73,14 @@ impl Range<'_> {
 
 /// The columns of a range along the parameter of this name.
 #[rustfmt::skip]
-fn of_range<'a>(along: &str) -> [Column<Range<'a>>; 10] {
+fn of_range<'a>(along: &str) -> [Column<Range<'a>>; 11] {
     let symbol = if along == MU { "μ" } else { along };
     let edge = |end: &str, meaning: String, read: fn(&Range) -> Value| {
         Column::made(Head::new(format!("{along}_{end}"), name_and_unit(along).1, meaning), read)
     };
     [
         edge("c", format!("{symbol} at which the mode begins to grow; empty if it grows at the smallest {symbol} already, or at none"), |of| of.read(|onset| onset.below.map(|_| onset.mu))),
+        edge("c_mesh_error", format!("bound of the error of {symbol} there that the mesh makes; empty if it is unknown"), |of| of.read(|onset| onset.mesh_error)),
         edge("below", format!("largest {symbol} below; of a series without a mode that grows, the largest one"), |of| of.last.map_or_else(|| of.read(|onset| onset.below), Value::from)),
         edge("above", format!("smallest {symbol} above"), |of| of.read(|onset| Some(onset.above))),
         edge("end", format!("{symbol} at which the mode ceases to grow; empty if it still grows at its last point"), |of| of.read(|onset| onset.ends.map(|ends| ends.at))),

@@ -2,7 +2,7 @@
 
 use super::{Doubt, owned, percent, short};
 use crate::spec::elasticity::{self, LOCKING_POISSON_RATIO};
-use crate::spec::{ClampSide, DiskKind, FieldError, JobSpec, Shape};
+use crate::spec::{ClampSide, DiskKind, FieldError, JobSpec, Shape, Start};
 use std::f64::consts::PI;
 
 /// Mean strain of the pin from which on the linear model is in doubt.
@@ -109,10 +109,32 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
         });
     }
     found.extend(two_dampings(spec));
+    found.extend(no_coarser_mesh(spec));
     found.extend(clamp(spec));
     found.extend(cylinder(spec));
     found.extend(friction(spec));
     found
+}
+
+/// An error that is asked for where there is nothing to compare with.
+fn no_coarser_mesh(spec: &JobSpec) -> Option<Doubt> {
+    let is_asked = spec.accuracy.is_some() || spec.run.start == Start::Compared;
+    let why = if spec.scene.pin.own_elements().is_none() {
+        "the program makes no coarser mesh of one from a file"
+    } else if spec.continuation.is_some() {
+        "a job that continues another one stays on its mesh"
+    } else if !spec.scene.program.is_constant() {
+        "a run with a program has no steady state to compare"
+    } else {
+        "half as many elements in each direction are too few"
+    };
+    (is_asked && spec.has_run() && spec.coarser_elements().is_empty()).then(|| Doubt {
+        kind: "mesh_error",
+        fields: owned(&["accuracy.mu_star", "run.start", "scene.pin.elements"]),
+        size: 1.0,
+        message: format!("the error of the mesh stays unknown: {why}"),
+        help: "a finer mesh, or a comparison of two meshes by hand, says how large it is".to_owned(),
+    })
 }
 
 /// The scheme's own damping, (β₂ − ½) Δt, beside that of the material.
