@@ -617,7 +617,7 @@ def page(rows):
 Written by `scripts/mesh_errors.py` from [mesh_errors.csv](mesh_errors.csv) and [mode_errors.csv](mode_errors.csv), which the same script fills from runs; do not edit.
 
 A result knows the error that its mesh makes if the job ran on a coarser mesh first. `mu_star_mesh_error` and `frequency_mesh_error_hz` are
-absolute bounds, each for {percent(0.95, 0)} of jobs. They say nothing of the time step, the damping or the model, and `mu_star_se` is the error of the mean
+absolute bounds, each chosen to cover {percent(0.95, 0)} of the jobs of the scenes below; [other scenes](#scenes-that-took-no-part) have less. They say nothing of the time step, the damping or the model, and `mu_star_se` is the error of the mean
 over time. This page says where the bounds come from, what they cover, and where the error is unknown.
 
 ## The bound

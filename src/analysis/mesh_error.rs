@@ -12,7 +12,7 @@ use crate::spec::Accuracy;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// What the mesh adds to the uncertainty of a result. The bounds hold for 95 % of jobs (docs/mesh_errors.md).
+/// What the mesh adds to the uncertainty of a result. The bounds are chosen to hold for 95 % of jobs (docs/mesh_errors.md).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MeshError {
     /// Bound of the absolute error of μ\*.

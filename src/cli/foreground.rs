@@ -24,10 +24,10 @@ pub(crate) fn parse_accuracy(text: &str) -> Result<(String, String), String> {
         Some(percent) => percent.trim().parse::<f64>().map(|percent| percent / 100.0),
         None => text.trim().parse::<f64>(),
     };
-    let expected = || "expected a share of μ* from 0.01 % to 20 %, for example 1% or 0.01".to_owned();
-    let share = share.map_err(|_| expected())?;
-    if !Limit::of("accuracy.mu_star").is_some_and(|limit| limit.holds(share)) {
-        return Err(expected());
+    let share = share.map_err(|_| "expected a share of μ*, for example 1% or 0.01".to_owned())?;
+    let limit = Limit::of("accuracy.mu_star").filter(|limit| !limit.holds(share));
+    if let Some(limit) = limit {
+        return Err(format!("expected {}", limit.expected(share)));
     }
     Ok(("accuracy_mu_star".to_owned(), share.to_string()))
 }

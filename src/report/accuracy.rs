@@ -31,7 +31,7 @@ pub(super) fn in_words(rows: &[JobRow]) -> Vec<String> {
             hz => format!(" and of a frequency at most {} Hz", significant(hz, 2)),
         };
         sentences.push(format!(
-            "Mesh: the error of μ* is at most {}{of_frequency}. Such bounds hold for 95 % of jobs.",
+            "Mesh: the error of μ* is at most {}{of_frequency}. Such bounds are chosen to hold for 95 % of jobs.",
             significant(largest[0], 2)
         ));
     }

@@ -49,9 +49,10 @@ pub(super) fn without_effect(spec: &JobSpec) -> Vec<&'static str> {
 /// mesh in any case.
 fn has_start(spec: &JobSpec) -> bool {
     let has_coarser = || !spec.coarser_elements().is_empty();
+    let is_compared_anyway = spec.accuracy.is_some() && spec.has_run();
     match spec.run.start {
         Start::Rest => true,
-        Start::Nested => (spec.accuracy.is_none() || spec.starts_in_motion()) && has_coarser(),
-        Start::Compared => spec.accuracy.is_none() && has_coarser(),
+        Start::Nested => (!is_compared_anyway || spec.starts_in_motion()) && has_coarser(),
+        Start::Compared => !is_compared_anyway && has_coarser(),
     }
 }

@@ -251,6 +251,14 @@ fn ways_without_effect_do_not_change_the_key() {
     };
     assert_eq!(asking(Start::Compared), asking(Start::Rest));
     assert_ne!(asking(Start::Nested), asking(Start::Rest));
+    // Modes have no accuracy, so that only their start asks for the coarser mesh.
+    let modes_asking = |start| {
+        let mut spec = JobSpec { accuracy: Some(Accuracy { mu_star: 0.01 }), ..JobSpec::default() };
+        spec.stability = StabilityMethod::Modes;
+        (spec.scene.pin.elements, spec.run.start) = ([24, 30, 20], start);
+        key(&spec)
+    };
+    assert_ne!(modes_asking(Start::Compared), modes_asking(Start::Rest));
     let decided = |kind, stability| with([12, 15, 10], Start::Rest, stability, kind);
     let elastic = DiskKind::Elastic;
     assert_eq!(decided(elastic, StabilityMethod::Eigenvalues), decided(elastic, simulate));
