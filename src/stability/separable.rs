@@ -92,7 +92,7 @@ impl Separable {
             let lines = work.chunks_exact_mut(line_numbers);
             for (line, blocks) in lines.zip(x.blocks().chunks_exact(x.blocks_per_line())) {
                 for (numbers, block) in line.chunks_mut(WIDTH).zip(blocks) {
-                    numbers.copy_from_slice(&block.0[c][..numbers.len()]);
+                    copy(numbers, &block.0[c]);
                 }
             }
             let mut stride = L;
@@ -113,7 +113,7 @@ impl Separable {
             let lines = work.chunks_exact(line_numbers);
             for (line, blocks) in lines.zip(y.blocks_mut().chunks_exact_mut(blocks_per_line)) {
                 for (numbers, block) in line.chunks(WIDTH).zip(blocks) {
-                    block.0[c][..numbers.len()].copy_from_slice(numbers);
+                    copy(&mut block.0[c], numbers);
                 }
             }
         }
@@ -160,6 +160,18 @@ impl Line {
 /// Number of results that are computed together.
 const TILE: usize = 4;
 
+/// Copies the numbers that both have. A copy of a whole block, whose length the compiler knows, is not a call.
+#[inline(always)]
+fn copy(to: &mut [f64], from: &[f64]) {
+    match (to.first_chunk_mut::<WIDTH>(), from.first_chunk::<WIDTH>()) {
+        (Some(to), Some(from)) => *to = *from,
+        _ => {
+            let shared = to.len().min(from.len());
+            to[..shared].copy_from_slice(&from[..shared]);
+        }
+    }
+}
+
 /// Multiplies every line of `length` numbers, `stride` apart, with a matrix (row → column).
 #[inline(always)]
 fn transform<S: Simd>(simd: S, matrix: &[f64], length: usize, stride: usize, work: &mut [f64]) {
@@ -169,7 +181,7 @@ fn transform<S: Simd>(simd: S, matrix: &[f64], length: usize, stride: usize, wor
             let width = WIDTH.min(stride - first);
             for (at, row) in lines.iter_mut().enumerate() {
                 let start = first + at * stride;
-                row.0[..width].copy_from_slice(&block[start..start + width]);
+                copy(&mut row.0, &block[start..start + width]);
             }
             for (tile, rows) in matrix.chunks(TILE * length).enumerate() {
                 let mut sums = [f64x8::splat(simd, 0.0); TILE];
@@ -191,7 +203,7 @@ fn transform<S: Simd>(simd: S, matrix: &[f64], length: usize, stride: usize, wor
                 for t in 0..rows.len() / length {
                     let start = first + (tile * TILE + t) * stride;
                     sums[t].store_slice(&mut sum.0);
-                    block[start..start + width].copy_from_slice(&sum.0[..width]);
+                    copy(&mut block[start..start + width], &sum.0);
                 }
             }
         }

@@ -115,7 +115,7 @@ fn companions_and_interruptions_change_nothing_with_other_laws() {
                 contact.speed_m_s = Some([0.01, 0.1, 1.0][i % 3]);
                 contact.slope_s_m = Some([0.0, 0.2][i % 2]);
                 contact.length_m = Some([1.0e-6, 1.0e-5][i % 2]);
-                job.run.limit_s = job.run.limit_s.min(0.003);
+                job.run.limit_s = job.run.limit_s.min(0.002);
             }
             companions_change_nothing_in(&jobs);
             resumed_jobs_have_the_same_bits(&jobs, &[2]);
@@ -228,18 +228,27 @@ fn accurate_jobs(precision: Precision) -> Vec<JobSpec> {
 /// on each of its meshes.
 #[test]
 fn companions_and_interruptions_change_nothing_where_an_accuracy_is_asked() {
-    for precision in [Precision::Double, Precision::Single] {
-        let jobs = accurate_jobs(precision);
-        let records: Vec<_> = jobs.iter().map(|job| solve(job, &mut Unobserved).unwrap()).collect();
-        for (elements, reached) in [([12, 14, 14], true), ([24, 28, 28], false)] {
-            let is_such = |record: &&JobRecord| {
-                (record.elements, record.accuracy_reached) == (Some(elements), Some(reached))
-            };
-            assert!(records.iter().any(|record| is_such(&record)), "{elements:?}, reached: {reached}");
-        }
-        companions_change_nothing_in(&jobs);
-        resumed_jobs_have_the_same_bits(&jobs, &[0, 3]);
+    nothing_changes_where_an_accuracy_is_asked(Precision::Single);
+}
+
+/// Protects: the same in double precision.
+#[test]
+#[ignore = "the other precision takes the same paths"]
+fn companions_and_interruptions_change_nothing_where_an_accuracy_is_asked_in_double_precision() {
+    nothing_changes_where_an_accuracy_is_asked(Precision::Double);
+}
+
+fn nothing_changes_where_an_accuracy_is_asked(precision: Precision) {
+    let jobs = accurate_jobs(precision);
+    let records: Vec<_> = jobs.iter().map(|job| solve(job, &mut Unobserved).unwrap()).collect();
+    for (elements, reached) in [([12, 14, 14], true), ([24, 28, 28], false)] {
+        let is_such = |record: &&JobRecord| {
+            (record.elements, record.accuracy_reached) == (Some(elements), Some(reached))
+        };
+        assert!(records.iter().any(|record| is_such(&record)), "{elements:?}, reached: {reached}");
     }
+    companions_change_nothing_in(&jobs);
+    resumed_jobs_have_the_same_bits(&jobs, &[0, 3]);
 }
 
 /// Protects: the same with both, a coarser mesh and single precision.

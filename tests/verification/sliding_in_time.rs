@@ -8,7 +8,7 @@
 //! them. At a tenth of the stability limit, ωΔt is below 0.05 for the modes here, so rates of 1/100 of ω change by less
 //! than 1 %.
 
-use crate::sliding_modes::{EXACT, SURE, scene};
+use crate::sliding_modes::{SURE, scene};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use tribosweep_mechanics::analysis;
@@ -23,6 +23,9 @@ const AMPLITUDE: f64 = 1.0e-5;
 /// 40 1/s over 1 % of μ.
 const CLOSE: Accuracy =
     Accuracy { corrected: 1, aim: Aim::Leading, groups: 2, residual: 3.0e-3, rounds: 4, with_shapes: true };
+
+/// The same for a growth rate: errors are below 0.1 1/s, which is 1/1000 of a rate here.
+const CLOSER: Accuracy = Accuracy { residual: 3.0e-4, rounds: 8, ..CLOSE };
 
 /// A model for small vibrations.
 pub struct Pin {
@@ -148,24 +151,37 @@ fn fit(x: &[f64], m: usize, dt: f64) -> (f64, f64) {
     ((-b).ln() / (2.0 * span), (a / (2.0 * (-b).sqrt())).acos() / (TAU * span))
 }
 
-/// Protects: vibrations of runs grow and decay as the eigenvalues say, on five meshes and clamps, to 1 %. With the time step
+fn on_side(elements: [usize; 3], width_m: f64, mu: f64, omega_rpm: f64, side: ClampSide) -> JobSpec {
+    let mut spec = scene(elements, width_m, mu, omega_rpm);
+    spec.scene.clamp.side = side;
+    spec
+}
+
+/// Protects: vibrations of runs grow and decay as the eigenvalues say, on three meshes and clamps, to 1 %. With the time step
 /// in the eigenvalue, the agreement is ten times better.
 #[test]
 fn runs_grow_and_decay_like_their_modes() {
-    let with_side = |elements, width_m, mu, omega_rpm, side| {
-        let mut spec = scene(elements, width_m, mu, omega_rpm);
-        spec.scene.clamp.side = side;
-        spec
-    };
-    for spec in [
-        with_side([6, 8, 5], 0.002, 0.35, 7.0, ClampSide::InnerSide),
-        with_side([8, 10, 7], 0.0015, 0.1, 2.0, ClampSide::OuterSide),
-        with_side([6, 8, 6], 0.001_875, 0.4, 20.0, ClampSide::TrailingEnd),
-        with_side([5, 6, 5], 0.0024, 0.25, 50.0, ClampSide::BothSides),
-        with_side([8, 10, 6], 0.0015, 0.15, 1.0, ClampSide::WholeTop),
-    ] {
-        let pin = Pin::new(&spec, 0.1);
-        let vibration = pin.vibration(&spec, EXACT);
+    are_like_their_modes(&[
+        on_side([6, 8, 5], 0.002, 0.35, 7.0, ClampSide::InnerSide),
+        on_side([6, 8, 6], 0.001_875, 0.4, 20.0, ClampSide::TrailingEnd),
+        on_side([5, 6, 5], 0.0024, 0.25, 50.0, ClampSide::BothSides),
+    ]);
+}
+
+/// Protects: the same with the other clamps, at low speeds.
+#[test]
+#[ignore = "two finer meshes"]
+fn runs_on_finer_meshes_grow_and_decay_like_their_modes() {
+    are_like_their_modes(&[
+        on_side([8, 10, 7], 0.0015, 0.1, 2.0, ClampSide::OuterSide),
+        on_side([8, 10, 6], 0.0015, 0.15, 1.0, ClampSide::WholeTop),
+    ]);
+}
+
+fn are_like_their_modes(specs: &[JobSpec]) {
+    for spec in specs {
+        let pin = Pin::new(spec, 0.1);
+        let vibration = pin.vibration(spec, CLOSER);
         let mode = vibration.leading();
         let (growth_per_s, frequency_hz) = vibration.run(20.0);
         let name = spec.scene.clamp.side.name();
@@ -186,28 +202,40 @@ fn runs_grow_and_decay_like_their_modes() {
 }
 
 /// Protects: the threshold of the eigenvalues is that of runs to 1 %, for three clamps and three damping values: vibrations
-/// decay at 0.99 μ_c and grow at 1.01 μ_c. The eigenvalues are those with the time step: at 34 kHz it changes a growth rate
+/// decay at 0.99 μ_c and grow at 1.01 μ_c. A test in every run of the suite has one damping for each clamp. The eigenvalues are those with the time step: at 34 kHz it changes a growth rate
 /// by 25 1/s even at a tenth of the limit. The shape of the start is that without a time step. The other modes that this
 /// excites are smaller by the square of the step, and their beats average out over many periods.
 #[test]
 fn thresholds_of_the_inner_side_are_those_of_runs() {
-    thresholds_are_those_of_runs(ClampSide::InnerSide);
+    thresholds_are_those_of_runs(ClampSide::InnerSide, &DAMPINGS_S[..1]);
 }
 
 /// Protects: the same with another clamp.
 #[test]
 fn thresholds_of_the_trailing_end_are_those_of_runs() {
-    thresholds_are_those_of_runs(ClampSide::TrailingEnd);
+    thresholds_are_those_of_runs(ClampSide::TrailingEnd, &DAMPINGS_S[1..2]);
 }
 
 /// Protects: the same with a third clamp.
 #[test]
 fn thresholds_of_both_sides_are_those_of_runs() {
-    thresholds_are_those_of_runs(ClampSide::BothSides);
+    thresholds_are_those_of_runs(ClampSide::BothSides, &DAMPINGS_S[2..]);
 }
 
-fn thresholds_are_those_of_runs(side: ClampSide) {
-    for beta_r_s in [2.0e-8, 5.0e-8, 2.0e-7] {
+/// Protects: the same with every damping for each clamp.
+#[test]
+#[ignore = "nine thresholds, each of some ten points"]
+fn thresholds_at_every_damping_are_those_of_runs() {
+    for side in [ClampSide::InnerSide, ClampSide::TrailingEnd, ClampSide::BothSides] {
+        thresholds_are_those_of_runs(side, &DAMPINGS_S);
+    }
+}
+
+/// β_R of the thresholds.
+const DAMPINGS_S: [f64; 3] = [2.0e-8, 5.0e-8, 2.0e-7];
+
+fn thresholds_are_those_of_runs(side: ClampSide, dampings_s: &[f64]) {
+    for &beta_r_s in dampings_s {
         let at = |mu: f64| {
             let mut spec = scene([5, 6, 5], 0.0024, mu, 7.0);
             spec.scene.clamp.side = side;

@@ -180,7 +180,14 @@ fn modes_are_those_of_the_unreduced_problem() {
     free_top.scene.top = TopFace::FreeInZ;
     let mut trailing = scene([5, 6, 4], 0.0025, 0.6, 2.0);
     trailing.scene.clamp.side = ClampSide::TrailingEnd;
-    compare(&[scene([6, 8, 5], 0.002, 0.1, 0.5), scene([6, 8, 5], 0.002, 0.3, 35.0), free_top, trailing]);
+    compare(&[scene([4, 5, 4], 0.003, 0.1, 0.5), free_top, trailing]);
+}
+
+/// Protects: the same on a finer mesh, at the slowest speed and at a fast one.
+#[test]
+#[ignore = "eigenvalues of dense matrices of 2000 rows"]
+fn modes_on_a_finer_mesh_are_those_of_the_unreduced_problem() {
+    compare(&[scene([6, 8, 5], 0.002, 0.1, 0.5), scene([6, 8, 5], 0.002, 0.3, 35.0)]);
 }
 
 /// Protects: as above, with the whole top clamped, strong damping and many lifted nodes.
@@ -225,7 +232,8 @@ fn compare(specs: &[JobSpec]) {
 fn the_equilibrium_solves_the_complementarity_problem() {
     let mut spec = scene([6, 8, 5], 0.002, 0.6, 7.0);
     spec.scene.clamp.side = ClampSide::TrailingEnd;
-    let (model, point) = exact_point(&spec);
+    let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
+    let point = Structure::new(&model).unwrap().point(&model, &analysis::drive(&spec), 1).unwrap();
     let equilibrium = &point.equilibrium;
     let dense = Dense::new(&model, &equilibrium.in_contact, spec.scene.contact.mu);
     let mut force = Mat::zeros(dense.mass.len(), 1);
