@@ -61,7 +61,7 @@ pub use job::{JobObserver, Unobserved, on_final_mesh, solve};
 pub use lanes::Moment;
 pub use mesh_error::{MeshError, UnknownError};
 pub use mode::ComplexMode;
-pub use nested::CoarseStart;
+pub use nested::{CoarseStart, earliest_end};
 pub use noted::Noted;
 pub use record::{
     ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,

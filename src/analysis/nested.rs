@@ -118,6 +118,15 @@ pub fn coarser(spec: &JobSpec) -> Option<JobSpec> {
     Some(coarse)
 }
 
+/// The job on the coarsest mesh on which it may end, because its error is small enough there; none if it asks for no accuracy or has one
+/// mesh to end on.
+pub fn earliest_end(spec: &JobSpec) -> Option<JobSpec> {
+    spec.accuracy?;
+    let coarse = coarser(spec)?;
+    coarser(&coarse)?;
+    Some(earliest_end(&coarse).unwrap_or(coarse))
+}
+
 /// Whether two widths of the clamp are the same but for rounding.
 pub(super) fn is_same_width(a_m: f64, b_m: f64) -> bool {
     (a_m - b_m).abs() <= 1.0e-9 * b_m

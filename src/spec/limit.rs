@@ -202,7 +202,7 @@ pub static LIMITS: &[Limit] = &[
     not_negative("scene.program.force_n[][]", "a time >= 0 s and a load > 0 N"),
     between("numerics.beta2", At(0.5), At(1.0), "0.5 <= β₂ <= 1 (0.5 is the central difference)"),
     not_negative("numerics.beta_r_s", "a damping time >= 0 s"),
-    between("accuracy.mu_star", At(1.0e-4), At(0.2), "a share of μ* from 0.0001 to 0.2: 0.01 is 1 %"),
+    between("accuracy.mu_star", At(1.0e-4), At(0.5), "a share of μ* from 0.0001 to 0.5: 0.01 is 1 %"),
     between("numerics.safety_factor", Beyond(0.0), At(1.0), "a fraction of the stability limit, 0 < safety_factor <= 1"),
     between("numerics.time_step_s", Beyond(0.0), Open, "a time step > 0 s"),
     between("run.limit_s", Beyond(0.0), At(LONGEST_LIMIT_S), "a time limit, 0 < limit_s <= 100 s"),

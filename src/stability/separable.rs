@@ -163,12 +163,11 @@ const TILE: usize = 4;
 /// Copies the numbers that both have. A copy of a whole block, whose length the compiler knows, is not a call.
 #[inline(always)]
 fn copy(to: &mut [f64], from: &[f64]) {
-    match (to.first_chunk_mut::<WIDTH>(), from.first_chunk::<WIDTH>()) {
-        (Some(to), Some(from)) => *to = *from,
-        _ => {
-            let shared = to.len().min(from.len());
-            to[..shared].copy_from_slice(&from[..shared]);
-        }
+    if let (Some(to), Some(from)) = (to.first_chunk_mut::<WIDTH>(), from.first_chunk::<WIDTH>()) {
+        *to = *from;
+    } else {
+        let shared = to.len().min(from.len());
+        to[..shared].copy_from_slice(&from[..shared]);
     }
 }
 

@@ -219,7 +219,7 @@ fn accurate_jobs(precision: Precision) -> Vec<JobSpec> {
         job.run.stop_early = true;
         job.run.limit_s = 0.0012 + 1.0e-4 * i as f64;
         job.numerics.beta2 = 0.5;
-        job.accuracy = Some(Accuracy { mu_star: [0.2, 1.0e-4][i % 2] });
+        job.accuracy = Some(Accuracy { mu_star: [0.4, 1.0e-4][i % 2] });
     }
     jobs
 }

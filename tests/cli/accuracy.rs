@@ -171,7 +171,7 @@ fn an_accuracy_on_the_command_line() {
         // The clamp of 4 mm is a third of the pin, so 10 elements become 12.
         assert!(printed.contains("48×60×40"), "{printed}");
     }
-    let limits = "expected a share of μ* from 0.0001 to 0.2: 0.01 is 1 %";
+    let limits = "expected a share of μ* from 0.0001 to 0.5: 0.01 is 1 %";
     for (wrong, why) in [("two", "for example 1% or 0.01"), ("0%", limits), ("200%", limits), ("-1%", limits)]
     {
         let end = folder.command("validate mine.json --accuracy").arg(wrong).assert().code(2);

@@ -15,7 +15,7 @@ pub use time::TimeRange;
 
 use super::error::SweepError;
 use super::plan::Plan;
-use crate::analysis::{Ending, Workload};
+use crate::analysis::{Ending, Workload, earliest_end};
 use crate::queue::{JobState, Queue};
 use crate::spec::{Precision, StabilityMethod};
 use crate::study::Job;
@@ -145,7 +145,8 @@ impl Forecast {
         for (job, workload) in plan.jobs().iter().zip(plan.workloads()) {
             if is_left(job) {
                 left += 1;
-                tasks.add(workload, Ending::of(&job.spec));
+                let earliest = earliest_end(&job.spec).and_then(|spec| Workload::estimate(&spec).ok());
+                tasks.add(workload, earliest.as_ref().unwrap_or(workload), Ending::of(&job.spec));
             }
         }
         let threads = threads.min(plan.jobs().len()).max(1);

@@ -51,10 +51,11 @@ const BESIDES_S: [f64; 2] = [0.02, 0.3];
 const ROW_S: [f64; 2] = [0.0, 0.003];
 
 impl Tasks {
-    /// Adds a job.
-    pub fn add(&mut self, workload: &Workload, ending: Ending) {
-        let [early, likely, late, limit] =
-            [ending.early_s, ending.likely_s, ending.late_s, ending.limit_s].map(|s| workload.node_steps(s));
+    /// Adds a job. `earliest` is its workload on the coarsest mesh on which it may end.
+    pub fn add(&mut self, workload: &Workload, earliest: &Workload, ending: Ending) {
+        let early = earliest.node_steps(ending.early_s);
+        let [likely, late, limit] =
+            [ending.likely_s, ending.late_s, ending.limit_s].map(|s| workload.node_steps(s));
         self.jobs += 1;
         self.early += early;
         self.likely += likely;
@@ -123,7 +124,8 @@ fn duration(seconds: f64) -> Duration {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spec::JobSpec;
+    use crate::analysis::earliest_end;
+    use crate::spec::{Accuracy, JobSpec};
 
     const SPEED: Speed = Speed { fast_ns: 4.0, slow_ns: 6.0, jobs: 20 };
 
@@ -133,7 +135,8 @@ mod tests {
         let workload = Workload::estimate(&spec).unwrap();
         let mut tasks = Tasks::default();
         for _ in 0..jobs {
-            tasks.add(&workload, Ending::of(&spec));
+            let earliest = earliest_end(&spec).map(|spec| Workload::estimate(&spec).unwrap());
+            tasks.add(&workload, earliest.as_ref().unwrap_or(&workload), Ending::of(&spec));
         }
         tasks
     }
@@ -177,6 +180,18 @@ mod tests {
         };
         let (first, later) = (factor(Speed::TYPICAL), factor(SPEED));
         assert!((9.5..11.5).contains(&first) && (4.5..5.6).contains(&later), "{first} {later}");
+    }
+
+    /// Protects: the range of jobs that ask for an accuracy begins where all of them end on the first mesh that can prove it. Its elements
+    /// are twice as large in each direction, and a step is at least twice as long.
+    #[test]
+    fn an_accuracy_may_be_reached_early() {
+        let fine = tasks(10, |spec| spec.scene.pin.elements = [48, 60, 40]);
+        let asked = tasks(10, |spec| {
+            spec.scene.pin.elements = [48, 60, 40];
+            spec.accuracy = Some(Accuracy { mu_star: 0.01 });
+        });
+        assert!(asked.early < fine.early / 14.0 && asked.likely == fine.likely);
     }
 
     /// Protects: threads share many jobs, and a single job gains nothing from a second thread.
