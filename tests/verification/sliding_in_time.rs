@@ -202,8 +202,8 @@ fn are_like_their_modes(specs: &[JobSpec]) {
 }
 
 /// Protects: the threshold of the eigenvalues is that of runs to 1 %, for three clamps and three damping values: vibrations
-/// decay at 0.99 μ_c and grow at 1.01 μ_c. A test in every run of the suite has one damping for each clamp. The eigenvalues are those with the time step: at 34 kHz it changes a growth rate
-/// by 25 1/s even at a tenth of the limit. The shape of the start is that without a time step. The other modes that this
+/// decay at 0.99 μ_c and grow at 1.01 μ_c. Each clamp has one damping here, and all three in the long form. The eigenvalues are
+/// those with the time step: at 34 kHz it changes a growth rate by 25 1/s even at a tenth of the limit. The shape of the start is that without a time step. The other modes that this
 /// excites are smaller by the square of the step, and their beats average out over many periods.
 #[test]
 fn thresholds_of_the_inner_side_are_those_of_runs() {
