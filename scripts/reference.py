@@ -58,7 +58,9 @@ def values(schema, definitions):
         count = f" of {least}" if least and least == most else ""
         inner = values(schema["items"], definitions)
         return f"list{count}: {inner}" if inner else f"list{count}"
-    return ", ".join(kind for kind in kinds if kind != "null")
+    # The head of the page says which numbers may be texts with units.
+    hidden = ["null", "string"] if "number" in kinds else ["null"]
+    return ", ".join(kind for kind in kinds if kind not in hidden)
 
 
 def is_section(definition):
@@ -95,7 +97,7 @@ def fields(program):
     top = {name: field for name, field in schema["properties"].items() if name != "grid"}
     parts = [
         "# Fields of a study\n\nWritten by `scripts/reference.py` from `tribosweep schema` and `tribosweep parameters`; do not edit. [Studies](studies.md) explains the fields. The unit is in the end of "
-        "a name: `_m` is metres, `_pa` pascals, `_s` seconds. A field without a default may be absent; what then holds is in its meaning.\n",
+        "a name: `_m` is metres, `_pa` pascals, `_s` seconds. Such a number may be a [text with another unit](studies.md#units). A field without a default may be absent; what then holds is in its meaning.\n",
         "## The file\n\n" + table({"properties": top}, definitions),
     ]
     for name, definition in definitions.items():

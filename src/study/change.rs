@@ -7,6 +7,7 @@ use super::outline::Outline;
 use super::parameter::{Kind, Parameter, unknown_help};
 use super::preset::Preset;
 use super::source::Change;
+use super::with_unit;
 use serde_json::Value;
 
 /// What a command changes of a study before its jobs are made.
@@ -85,7 +86,11 @@ impl Outline {
                 problems.push(problem(message));
             }
             named.push(parameter);
-            let value = parse_value(parameter, text);
+            let mut value = parse_value(parameter, text);
+            if let Err(message) = with_unit::in_setting(&mut value, parameter.unit) {
+                problems.push(problem(message).with_help(parameter.help()));
+                continue;
+            }
             let is_axis = forms == Forms::AxesToo && is_axis(parameter, &value);
             let value = if is_axis { value } else { parameter.normalise(value) };
             match if is_axis { Ok(()) } else { check_type(parameter, &value, &template) } {

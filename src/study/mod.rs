@@ -57,6 +57,7 @@ mod text;
 mod text_file;
 mod time_defaults;
 mod validate;
+mod with_unit;
 
 pub use chains::chains_of;
 pub use change::{Basins, Changes};

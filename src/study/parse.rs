@@ -23,6 +23,7 @@ use super::samples::{self, given::SamplesFile};
 use super::source::{Change, SourceText, shorten};
 use super::text::{STDIN, StudyText};
 use super::validate::check_jobs;
+use super::with_unit;
 use crate::spec::{FieldError, JobSpec, MOST_HEIGHTS, MOST_POINTS, StabilityMethod};
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -98,6 +99,7 @@ impl Study {
                 (value, source) = (with_content, read.at_places_of(&source));
             }
         }
+        refuse(with_unit::in_study(&mut value, &source))?;
         let template = StudyFile::template();
         let Decoded { value: file, mismatches } = decode_all::<StudyFile>(&value, &template);
         let mut problems: Vec<_> =

@@ -3,7 +3,9 @@
 use super::file::StudyFile;
 use super::limit_schema::keywords;
 use super::time_defaults;
+use super::with_unit::PATTERN;
 use crate::spec::LIMITS;
+use crate::units::name_and_unit;
 use schemars::schema_for;
 use serde_json::Value;
 
@@ -24,7 +26,49 @@ pub fn schema() -> Value {
             }
         }
     }
+    allow_units(&mut schema, false);
     schema
+}
+
+/// The definitions of values of any parameter, with a unit or without.
+const OF_PARAMETERS: [&str; 2] = ["Range", "Distribution"];
+
+/// Lets every number whose name ends with a unit be a text with a unit, too. `has_unit` is whether the name of `schema` does.
+fn allow_units(schema: &mut Value, has_unit: bool) {
+    let Value::Object(fields) = schema else { return };
+    let kinds = fields.get_mut("type").filter(|_| has_unit);
+    let allowed = match kinds {
+        Some(Value::String(kind)) if kind == "number" => Some(vec!["number".into(), "string".into()]),
+        Some(Value::Array(kinds)) if kinds.contains(&"number".into()) => {
+            Some(kinds.iter().cloned().chain(["string".into()]).collect())
+        }
+        _ => None,
+    };
+    if let Some(kinds) = allowed {
+        fields.insert("type".to_owned(), Value::Array(kinds));
+        fields.insert("pattern".to_owned(), PATTERN.into());
+    }
+    for (keyword, inner) in fields {
+        match (keyword.as_str(), inner) {
+            ("properties", Value::Object(properties)) => {
+                for (name, property) in properties {
+                    allow_units(property, has_unit || !name_and_unit(name).1.is_empty());
+                }
+            }
+            ("$defs", Value::Object(definitions)) => {
+                for (name, definition) in definitions {
+                    allow_units(definition, OF_PARAMETERS.contains(&name.as_str()));
+                }
+            }
+            ("items", item) => allow_units(item, has_unit),
+            ("anyOf" | "oneOf" | "allOf", Value::Array(forms)) => {
+                for form in forms {
+                    allow_units(form, has_unit);
+                }
+            }
+            _ => {}
+        }
+    }
 }
 
 /// Removes the defaults of the fields whose default depends on other fields. Their descriptions say what it is.

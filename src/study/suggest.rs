@@ -10,7 +10,7 @@ const ALIASES: &[(&[&str], &[&str])] = &[
     (&["nu", "ν", "poisson", "poissons_ratio"], &["poisson_ratio"]),
     (&["rho", "ρ", "density"], &["density_kg_m3"]),
     (&["f", "f_n", "force", "load", "normal_force", "fn", "normal_load"], &["load_n", "force_n"]),
-    (&["omega", "ω", "rpm", "speed", "speed_rpm", "n_rpm", "rotation_speed", "speed_m_s", "v", "velocity"], &["omega_rpm"]),
+    (&["omega", "ω", "rpm", "speed", "speed_rpm", "n", "n_rpm", "rotation_speed", "speed_m_s", "v", "velocity"], &["omega_rpm"]),
     (&["r", "r_m", "radius", "radius_m", "track_radius", "wear_track_radius"], &["track_radius_m"]),
     (&["d", "d_m", "diameter", "pin_diameter"], &["diameter_m"]),
     (&["μ", "friction", "friction_coefficient", "cof", "mu_k", "mu_kinetic", "mu_d"], &["mu"]),

@@ -53,6 +53,30 @@ const IGNORED: [&str; 7] = ["study", "job", "regime", "error", "wall_s", "note",
 const SQUEALS: &str = "squeals";
 const STATUS: &str = "status";
 
+/// What people call results in files of measured points. Their letters differ in case: F is a force.
+const SYMBOLS: [(&str, &[&str]); 2] = [
+    ("frequency_hz", &["f", "freq", "frequency", "f_hz"]),
+    (
+        "mu_star",
+        &[
+            "μ*",
+            "µ*",
+            "mu*",
+            "cof",
+            "COF",
+            "CoF",
+            "friction",
+            "friction_coefficient",
+            "coefficient of friction",
+        ],
+    ),
+];
+
+/// A name without a unit in brackets behind it: `n [rpm]`.
+fn without_brackets(name: &str) -> &str {
+    name.split(['[', '(']).next().unwrap_or(name).trim()
+}
+
 /// The largest file \[byte\]: some ten million rows.
 const MOST_BYTES: u64 = 1 << 30;
 
@@ -192,6 +216,17 @@ fn known_names() -> Vec<String> {
     parameters.chain(results).chain(own).collect()
 }
 
+/// The name that a header means, if it means one.
+fn meant_name<'a>(name: &str, known: &'a [String]) -> Option<&'a str> {
+    let bare = without_brackets(name);
+    let symbol = SYMBOLS.iter().find(|(_, symbols)| symbols.contains(&bare)).map(|(name, _)| *name);
+    let known = || known.iter().map(String::as_str);
+    symbol
+        .and_then(|symbol| known().find(|name| *name == symbol))
+        .or_else(|| misspelt_name(name, known()))
+        .or_else(|| misspelt_name(bare, known()))
+}
+
 fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, MeasuredError> {
     let known = known_names();
     let mut columns = Vec::new();
@@ -219,7 +254,7 @@ fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, Measured
             Column::Parameter(parameter)
         } else if let Some(scalar) = of_error() {
             Column::Error(scalar)
-        } else if let Some(meant) = misspelt_name(name, known.iter().map(String::as_str)) {
+        } else if let Some(meant) = meant_name(name, &known) {
             // Without it, a misspelt result would be missing in silence.
             let expected = "expected omega_rpm, mu or another parameter, a result such as mu_star or frequency_hz, its error \
                             such as mu_star_error or frequency_error_hz, squeals, or note";
@@ -383,6 +418,16 @@ mod tests {
                 "points.csv:2: column mu_star: 0,3: expected a number with a point: 0.3",
             ),
             ("rpm,mu_star\n7,0.3\n", "points.csv:1: column rpm: no such column; did you mean `omega_rpm`?"),
+            (
+                "omega_rpm,f [Hz]\n7,1\n",
+                "points.csv:1: column f [Hz]: no such column; did you mean `frequency_hz`?",
+            ),
+            (
+                "n [rpm],mu_star\n7,1\n",
+                "points.csv:1: column n [rpm]: no such column; did you mean `omega_rpm`?",
+            ),
+            ("F (N),mu_star\n7,1\n", "points.csv:1: column F (N): no such column; did you mean `load_n`?"),
+            ("omega_rpm,COF\n7,1\n", "points.csv:1: column COF: no such column; did you mean `mu_star`?"),
             ("omega_rpm,squeals\n7,maybe\n", "points.csv:2: column squeals: maybe: expected yes or no"),
             ("omega_rpm,mu_star\n7,NaN\n", "points.csv:2: column mu_star: NaN: expected a number"),
             ("omega_rpm,mu_star\n-7,0.3\n", "points.csv:2: column omega_rpm: -7: expected a number > 0"),

@@ -83,10 +83,21 @@ pub fn violation(root: &Value, schema: &Value, value: &Value, at: &str) -> Optio
                 forms.iter().find_map(|form| violation(root, form, value, at))
             }
             ("pattern", Value::String(text)) => {
-                assert_eq!(rule, "^[A-Za-z0-9_-]+$", "only the pattern of names is supported");
-                let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-                let fits = !text.is_empty() && text.chars().all(allowed);
-                if fits { None } else { fail("not a name".into()) }
+                let fits = match rule.as_str() {
+                    Some("^[A-Za-z0-9_-]+$") => {
+                        let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+                        !text.is_empty() && text.chars().all(allowed)
+                    }
+                    Some(r"^[+-]?[0-9.]+([eE][+-]?[0-9]+)? *(1/|[^0-9+., -]).*$") => {
+                        let rest = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+                        let is_number = rest.len() < text.len();
+                        let first = rest.trim_start().chars().next();
+                        is_number && first.is_some_and(|c| !c.is_ascii_digit() && !"+., -".contains(c))
+                            || is_number && rest.trim_start().starts_with("1/")
+                    }
+                    other => panic!("the pattern {other:?} is not supported"),
+                };
+                if fits { None } else { fail(format!("{text}: not of the pattern {rule}")) }
             }
             _ => None,
         };
