@@ -193,8 +193,7 @@ pub(super) fn number_hint(text: &str) -> Option<String> {
     }
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)))?;
     let (number, unit) = (text[..end].trim_end_matches(['e', 'E']), text[end..].trim());
-    (is_number(number) && !unit.is_empty())
-        .then(|| "write the number alone, in the unit that the name ends with".to_owned())
+    (is_number(number) && !unit.is_empty()).then(|| "write the number alone".to_owned())
 }
 
 /// Rewrites a message of serde.

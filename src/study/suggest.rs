@@ -10,7 +10,7 @@ const ALIASES: &[(&[&str], &[&str])] = &[
     (&["nu", "ν", "poisson", "poissons_ratio"], &["poisson_ratio"]),
     (&["rho", "ρ", "density"], &["density_kg_m3"]),
     (&["f", "f_n", "force", "load", "normal_force", "fn", "normal_load"], &["load_n", "force_n"]),
-    (&["omega", "ω", "rpm", "speed", "speed_rpm", "n", "n_rpm", "rotation_speed", "speed_m_s", "v", "velocity"], &["omega_rpm"]),
+    (&["omega", "ω", "rpm", "speed", "speed_rpm", "n_rpm", "rotation_speed", "speed_m_s", "v", "velocity"], &["omega_rpm"]),
     (&["r", "r_m", "radius", "radius_m", "track_radius", "wear_track_radius"], &["track_radius_m"]),
     (&["d", "d_m", "diameter", "pin_diameter"], &["diameter_m"]),
     (&["μ", "friction", "friction_coefficient", "cof", "mu_k", "mu_kinetic", "mu_d"], &["mu"]),
@@ -50,7 +50,8 @@ fn most_similar<'a>(
     candidates: impl IntoIterator<Item = (&'a str, Vec<String>)>,
     least: f64,
 ) -> Option<&'a str> {
-    let wrong = wrong.to_lowercase();
+    // The sign of micro looks like the Greek letter.
+    let wrong = wrong.to_lowercase().replace('µ', "μ");
     let candidates: Vec<_> = candidates.into_iter().collect();
     let meant = ALIASES.iter().filter(|(aliases, _)| aliases.contains(&wrong.as_str()));
     let known = |meant: &&str| candidates.iter().find(|(name, _)| name == meant).map(|(name, _)| *name);
@@ -101,6 +102,7 @@ mod tests {
             ("height_m", "size_z_m"),
             // A misspelt name is still found by its letters.
             ("omega_rmp", "omega_rpm"),
+            ("\u{b5}", "mu"),
             ("young_modulus", "young_modulus_pa"),
         ] {
             assert_eq!(nearest_name(wrong, names()), Some(right), "{wrong}");

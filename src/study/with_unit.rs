@@ -44,7 +44,7 @@ const PREFIXES: [(&str, i32); 10] = [
 
 /// A unit by its name, and whether it may have a prefix.
 #[rustfmt::skip]
-const UNITS: [(&str, Unit, bool); 20] = [
+const UNITS: [(&str, Unit, bool); 19] = [
     ("m", Unit { dimension: [0, 1, 0, 0], factor: 1.0, exponent: 0 }, true),
     ("g", Unit { dimension: [1, 0, 0, 0], factor: 1.0, exponent: -3 }, true),
     ("t", Unit { dimension: [1, 0, 0, 0], factor: 1.0, exponent: 3 }, false),
@@ -52,19 +52,18 @@ const UNITS: [(&str, Unit, bool); 20] = [
     ("min", Unit { dimension: [0, 0, 1, 0], factor: 60.0, exponent: 0 }, false),
     ("h", Unit { dimension: [0, 0, 1, 0], factor: 3600.0, exponent: 0 }, false),
     ("N", Unit { dimension: [1, 1, -2, 0], factor: 1.0, exponent: 0 }, true),
-    ("Nm", Unit { dimension: [1, 2, -2, 0], factor: 1.0, exponent: 0 }, false),
-    ("Ns", Unit { dimension: [1, 1, -1, 0], factor: 1.0, exponent: 0 }, false),
+    ("Nm", Unit { dimension: [1, 2, -2, 0], factor: 1.0, exponent: 0 }, true),
+    ("Ns", Unit { dimension: [1, 1, -1, 0], factor: 1.0, exponent: 0 }, true),
     ("J", Unit { dimension: [1, 2, -2, 0], factor: 1.0, exponent: 0 }, true),
     ("Pa", Unit { dimension: [1, -1, -2, 0], factor: 1.0, exponent: 0 }, true),
-    ("bar", Unit { dimension: [1, -1, -2, 0], factor: 1.0, exponent: 5 }, false),
+    ("bar", Unit { dimension: [1, -1, -2, 0], factor: 1.0, exponent: 5 }, true),
     ("Hz", Unit { dimension: [0, 0, -1, 0], factor: 1.0, exponent: 0 }, true),
     ("rad", Unit { dimension: [0, 0, 0, 1], factor: 1.0, exponent: 0 }, true),
     ("°", Unit { dimension: [0, 0, 0, 1], factor: PI / 180.0, exponent: 0 }, false),
     ("deg", Unit { dimension: [0, 0, 0, 1], factor: PI / 180.0, exponent: 0 }, false),
     ("rpm", Unit { dimension: [0, 0, -1, 1], factor: 2.0 * PI / 60.0, exponent: 0 }, false),
     ("rev", Unit { dimension: [0, 0, 0, 1], factor: 2.0 * PI, exponent: 0 }, false),
-    ("1", ONE, false),
-    ("%", Unit { dimension: [0; 4], factor: 1.0, exponent: -2 }, false),
+    ("U", Unit { dimension: [0, 0, 0, 1], factor: 2.0 * PI, exponent: 0 }, false),
 ];
 
 impl Unit {
@@ -73,13 +72,17 @@ impl Unit {
         let mut unit = ONE;
         for (place, part) in text.split('/').enumerate() {
             let sign = if place == 0 { 1 } else { -1 };
-            let mut factors =
-                part.split([' ', '·', '*', '\u{a0}']).filter(|factor| !factor.is_empty()).peekable();
-            if factors.peek().is_none() {
-                return Err(text);
-            }
-            for name in factors {
-                unit = unit.times(Self::power(name).ok_or(name)?, sign);
+            let names: Vec<&str> =
+                part.split([' ', '·', '*', '\u{a0}']).filter(|name| !name.is_empty()).collect();
+            match names[..] {
+                [] => return Err(text),
+                // Behind it, a divisor follows.
+                ["1"] if place == 0 && part.len() < text.len() => {}
+                _ => {
+                    for name in names {
+                        unit = unit.times(Self::power(name).ok_or(name)?, sign);
+                    }
+                }
             }
         }
         Ok(unit)
@@ -121,9 +124,13 @@ impl Unit {
     }
 }
 
+/// The longest text of a number with a unit \[byte\]. A longer one is quoted in part by the message about its type.
+const LONGEST: usize = 64;
+
 /// The number in `unit` that a text means; none if it is no number that something follows.
 fn number(text: &str, unit: &str) -> Option<Result<f64, String>> {
-    let (digits, given) = parts(text.trim())?;
+    let (digits, given) =
+        parts(text.trim()).filter(|_| text.len() <= LONGEST && !text.contains(char::is_control))?;
     Some(convert(digits, given, unit))
 }
 
@@ -138,8 +145,7 @@ fn parts(text: &str) -> Option<(&str, &str)> {
     }
     let (digits, rest) = text.split_at(end);
     let rest = rest.trim();
-    let is_unit =
-        rest.starts_with(|c: char| c.is_alphabetic() || "°%µ".contains(c)) || rest.starts_with("1/");
+    let is_unit = rest.starts_with(|c: char| c.is_alphabetic() || c == '°') || rest.starts_with("1/");
     (is_unit && digits.bytes().any(|byte| byte.is_ascii_digit())).then_some((digits, rest))
 }
 
@@ -174,7 +180,9 @@ fn convert(digits: &str, given: &str, unit: &str) -> Result<f64, String> {
     // The exponent is changed in the text: so 0.3 mm is the same number as 0.0003.
     let number = shift.and_then(|shift| format!("{mantissa}e{shift}").parse::<f64>().ok());
     let ratio = turns * found.factor / wanted.factor;
-    let number = number.map(|number| if given == unit || ratio == 1.0 { number } else { number * ratio });
+    // Rounding to 15 digits makes 4.1 Hz the same number as 246 rpm.
+    let rounded = |number: f64| format!("{:.14e}", number * ratio).parse().unwrap_or(f64::NAN);
+    let number = number.map(|number| if ratio == 1.0 { number } else { rounded(number) });
     number
         .filter(|number| number.is_finite())
         .ok_or_else(|| format!("`{digits}` is no number; expected one in {unit}"))
@@ -185,7 +193,8 @@ fn convert(digits: &str, given: &str, unit: &str) -> Result<f64, String> {
 fn replace(value: &mut Value, unit: &str, path: &str, refused: &mut Vec<(String, String)>) {
     match value {
         Value::Object(fields) => {
-            for (name, inner) in fields {
+            // The first column of a program's table is a time, whatever the second one is.
+            for (name, inner) in fields.iter_mut().filter(|(name, _)| *name != "program") {
                 let own = name_and_unit(name).1;
                 // The ends of a range have the unit of its parameter.
                 replace(inner, if own.is_empty() { unit } else { own }, &join(path, name), refused);
@@ -209,7 +218,10 @@ fn replace(value: &mut Value, unit: &str, path: &str, refused: &mut Vec<(String,
 pub(super) fn in_study(value: &mut Value, source: &SourceText) -> Vec<Problem> {
     let mut refused = Vec::new();
     replace(value, "", "", &mut refused);
-    refused.into_iter().map(|(path, message)| source.problem(&path, message)).collect()
+    let mut problems: Vec<Problem> =
+        refused.into_iter().map(|(path, message)| source.problem(&path, message)).collect();
+    problems.sort_by_key(|problem| problem.position);
+    problems
 }
 
 /// Makes numbers of the texts with units in the value or the values of a parameter.
@@ -264,7 +276,21 @@ mod tests {
         }
     }
 
-    /// Protects: angles, times and speeds of rotation are converted, to the rounding of three operations.
+    /// Protects: a speed or a time in other units has the bits of the decimal number that it is.
+    #[test]
+    fn revolutions_and_times_are_decimal_numbers() {
+        for thousandths in 1..5000 {
+            let hz = format!("{}.{:03}", thousandths / 1000, thousandths % 1000);
+            let rpm = format!("{}.{:02}", thousandths * 60 / 1000, thousandths * 60 % 1000 / 10);
+            let rpm: f64 = rpm.parse().unwrap();
+            assert_eq!(found(&format!("{hz} Hz"), "rpm"), rpm, "{hz} Hz");
+            assert_eq!(found(&format!("{hz} rev/s"), "rpm"), rpm, "{hz} rev/s");
+            assert_eq!(found(&format!("{hz} min"), "s"), rpm, "{hz} min");
+        }
+        assert_eq!(found("90 °/s", "rpm"), 15.0);
+    }
+
+    /// Protects: angles, times and speeds of rotation are converted, to the rounding to 15 digits.
     #[test]
     fn other_units_are_converted() {
         for (text, unit, expected) in [
@@ -276,7 +302,7 @@ mod tests {
             ("0.5 rad", "°", 28.647_889_756_541_16),
         ] {
             let number = found(text, unit);
-            assert!((number / expected - 1.0).abs() <= 4.0 * f64::EPSILON, "{text}: {number}");
+            assert!((number / expected - 1.0).abs() <= 1.0e-14, "{text}: {number}");
         }
     }
 
@@ -289,6 +315,10 @@ mod tests {
             ("0.1 m/s", "rpm", "the sliding speed v"),
             ("8,5 mm", "m", "a number has a decimal point: 8.5 mm"),
             ("8 m/", "m", "no known unit"),
+            ("30 N/12", "N", "`12` is no known unit"),
+            ("30 N 13", "N", "`13` is no known unit"),
+            ("8 mm 1", "m", "`1` is no known unit"),
+            ("8 kN %", "N", "`%` is no known unit"),
             ("1.2.3 mm", "m", "is no number"),
             ("1e999 mm", "m", "is no number"),
         ] {

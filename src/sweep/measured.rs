@@ -53,28 +53,18 @@ const IGNORED: [&str; 7] = ["study", "job", "regime", "error", "wall_s", "note",
 const SQUEALS: &str = "squeals";
 const STATUS: &str = "status";
 
-/// What people call results in files of measured points. Their letters differ in case: F is a force.
-const SYMBOLS: [(&str, &[&str]); 2] = [
-    ("frequency_hz", &["f", "freq", "frequency", "f_hz"]),
-    (
-        "mu_star",
-        &[
-            "μ*",
-            "µ*",
-            "mu*",
-            "cof",
-            "COF",
-            "CoF",
-            "friction",
-            "friction_coefficient",
-            "coefficient of friction",
-        ],
-    ),
+/// What people write above columns of measured points. Their letters differ in case: F is a force, and a bare n may count anything.
+#[rustfmt::skip]
+const SYMBOLS: [(&str, &[&str]); 3] = [
+    ("omega_rpm", &["n [rpm]", "n (rpm)", "n / rpm", "n/rpm", "n in rpm"]),
+    ("frequency_hz", &["f", "Freq", "freq", "FREQ", "frequency", "Frequency", "f_hz", "f_Hz"]),
+    ("mu_star", &["μ*", "µ*", "mu*", "cof", "COF", "CoF", "friction", "friction_coefficient", "coefficient of friction"]),
 ];
 
-/// A name without a unit in brackets behind it: `n [rpm]`.
-fn without_brackets(name: &str) -> &str {
-    name.split(['[', '(']).next().unwrap_or(name).trim()
+/// A name without the unit behind it: `n [rpm]`, `f / Hz`, `F in N`.
+fn without_unit(name: &str) -> &str {
+    let name = name.split(['[', '(', '/']).next().unwrap_or(name);
+    name.split(" in ").next().unwrap_or(name).trim()
 }
 
 /// The largest file \[byte\]: some ten million rows.
@@ -218,8 +208,11 @@ fn known_names() -> Vec<String> {
 
 /// The name that a header means, if it means one.
 fn meant_name<'a>(name: &str, known: &'a [String]) -> Option<&'a str> {
-    let bare = without_brackets(name);
-    let symbol = SYMBOLS.iter().find(|(_, symbols)| symbols.contains(&bare)).map(|(name, _)| *name);
+    let bare = without_unit(name);
+    let symbol = SYMBOLS
+        .iter()
+        .find(|(_, symbols)| [bare, name].iter().any(|name| symbols.contains(name)))
+        .map(|(name, _)| *name);
     let known = || known.iter().map(String::as_str);
     symbol
         .and_then(|symbol| known().find(|name| *name == symbol))
@@ -258,7 +251,13 @@ fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, Measured
             // Without it, a misspelt result would be missing in silence.
             let expected = "expected omega_rpm, mu or another parameter, a result such as mu_star or frequency_hz, its error \
                             such as mu_star_error or frequency_error_hz, squeals, or note";
-            let message = format!("no such column; did you mean `{meant}`?\n  help: {expected}");
+            let unit = name_and_unit(meant).1;
+            let converted = if without_unit(name) == name || unit.is_empty() {
+                String::new()
+            } else {
+                format!("\n  help: the numbers of `{meant}` are in {unit}")
+            };
+            let message = format!("no such column; did you mean `{meant}`?{converted}\n  help: {expected}");
             return Err(place.error(Some(name), message));
         } else {
             Column::Unknown
@@ -427,6 +426,14 @@ mod tests {
                 "points.csv:1: column n [rpm]: no such column; did you mean `omega_rpm`?",
             ),
             ("F (N),mu_star\n7,1\n", "points.csv:1: column F (N): no such column; did you mean `load_n`?"),
+            (
+                "omega_rpm,f / Hz\n7,1\n",
+                "points.csv:1: column f / Hz: no such column; did you mean `frequency_hz`?",
+            ),
+            (
+                "F [kN],mu_star\n7,1\n",
+                "points.csv:1: column F [kN]: no such column; did you mean `load_n`?\n  help: the numbers of `load_n` are in N",
+            ),
             ("omega_rpm,COF\n7,1\n", "points.csv:1: column COF: no such column; did you mean `mu_star`?"),
             ("omega_rpm,squeals\n7,maybe\n", "points.csv:2: column squeals: maybe: expected yes or no"),
             ("omega_rpm,mu_star\n7,NaN\n", "points.csv:2: column mu_star: NaN: expected a number"),

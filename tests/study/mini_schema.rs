@@ -91,9 +91,9 @@ pub fn violation(root: &Value, schema: &Value, value: &Value, at: &str) -> Optio
                     Some(r"^[+-]?[0-9.]+([eE][+-]?[0-9]+)? *(1/|[^0-9+., -]).*$") => {
                         let rest = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.".contains(c));
                         let is_number = rest.len() < text.len();
-                        let first = rest.trim_start().chars().next();
-                        is_number && first.is_some_and(|c| !c.is_ascii_digit() && !"+., -".contains(c))
-                            || is_number && rest.trim_start().starts_with("1/")
+                        let unit = rest.trim_start();
+                        let is_unit = |c: char| !c.is_ascii_digit() && !"+., -".contains(c);
+                        is_number && (unit.starts_with(is_unit) || unit.starts_with("1/"))
                     }
                     other => panic!("the pattern {other:?} is not supported"),
                 };
