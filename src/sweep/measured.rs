@@ -1,8 +1,9 @@
 //! Files of measured points, for comparison with studies: CSV with a column for each parameter and result.
 
+use super::header::suggestion;
 use crate::report::columns::ExportColumn;
 use crate::report::{FREQUENCY, JobRow, MeasuredValue, Measurement, Parameters, RowState, SCALARS, Scalar};
-use crate::study::{PARAMETERS, Parameter, misspelt_name, read_text};
+use crate::study::{PARAMETERS, Parameter, read_text};
 use crate::units::name_and_unit;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use serde_json::Value;
@@ -52,20 +53,6 @@ const IGNORED: [&str; 7] = ["study", "job", "regime", "error", "wall_s", "note",
 /// The column that says whether a point squeals, and that of an export, whose outcomes say it.
 const SQUEALS: &str = "squeals";
 const STATUS: &str = "status";
-
-/// What people write above columns of measured points. Their letters differ in case: F is a force, and a bare n may count anything.
-#[rustfmt::skip]
-const SYMBOLS: [(&str, &[&str]); 3] = [
-    ("omega_rpm", &["n [rpm]", "n (rpm)", "n / rpm", "n/rpm", "n in rpm"]),
-    ("frequency_hz", &["f", "Freq", "freq", "FREQ", "frequency", "Frequency", "f_hz", "f_Hz"]),
-    ("mu_star", &["μ*", "µ*", "mu*", "cof", "COF", "CoF", "friction", "friction_coefficient", "coefficient of friction"]),
-];
-
-/// A name without the unit behind it: `n [rpm]`, `f / Hz`, `F in N`.
-fn without_unit(name: &str) -> &str {
-    let name = name.split(['[', '(', '/']).next().unwrap_or(name);
-    name.split(" in ").next().unwrap_or(name).trim()
-}
 
 /// The largest file \[byte\]: some ten million rows.
 const MOST_BYTES: u64 = 1 << 30;
@@ -206,20 +193,6 @@ fn known_names() -> Vec<String> {
     parameters.chain(results).chain(own).collect()
 }
 
-/// The name that a header means, if it means one.
-fn meant_name<'a>(name: &str, known: &'a [String]) -> Option<&'a str> {
-    let bare = without_unit(name);
-    let symbol = SYMBOLS
-        .iter()
-        .find(|(_, symbols)| [bare, name].iter().any(|name| symbols.contains(name)))
-        .map(|(name, _)| *name);
-    let known = || known.iter().map(String::as_str);
-    symbol
-        .and_then(|symbol| known().find(|name| *name == symbol))
-        .or_else(|| misspelt_name(name, known()))
-        .or_else(|| misspelt_name(bare, known()))
-}
-
 fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, MeasuredError> {
     let known = known_names();
     let mut columns = Vec::new();
@@ -247,17 +220,11 @@ fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, Measured
             Column::Parameter(parameter)
         } else if let Some(scalar) = of_error() {
             Column::Error(scalar)
-        } else if let Some(meant) = meant_name(name, &known) {
+        } else if let Some(meant) = suggestion(name, &known) {
             // Without it, a misspelt result would be missing in silence.
             let expected = "expected omega_rpm, mu or another parameter, a result such as mu_star or frequency_hz, its error \
                             such as mu_star_error or frequency_error_hz, squeals, or note";
-            let unit = name_and_unit(meant).1;
-            let converted = if without_unit(name) == name || unit.is_empty() {
-                String::new()
-            } else {
-                format!("\n  help: the numbers of `{meant}` are in {unit}")
-            };
-            let message = format!("no such column; did you mean `{meant}`?{converted}\n  help: {expected}");
+            let message = format!("no such column; {meant}\n  help: {expected}");
             return Err(place.error(Some(name), message));
         } else {
             Column::Unknown
@@ -417,24 +384,6 @@ mod tests {
                 "points.csv:2: column mu_star: 0,3: expected a number with a point: 0.3",
             ),
             ("rpm,mu_star\n7,0.3\n", "points.csv:1: column rpm: no such column; did you mean `omega_rpm`?"),
-            (
-                "omega_rpm,f [Hz]\n7,1\n",
-                "points.csv:1: column f [Hz]: no such column; did you mean `frequency_hz`?",
-            ),
-            (
-                "n [rpm],mu_star\n7,1\n",
-                "points.csv:1: column n [rpm]: no such column; did you mean `omega_rpm`?",
-            ),
-            ("F (N),mu_star\n7,1\n", "points.csv:1: column F (N): no such column; did you mean `load_n`?"),
-            (
-                "omega_rpm,f / Hz\n7,1\n",
-                "points.csv:1: column f / Hz: no such column; did you mean `frequency_hz`?",
-            ),
-            (
-                "F [kN],mu_star\n7,1\n",
-                "points.csv:1: column F [kN]: no such column; did you mean `load_n`?\n  help: the numbers of `load_n` are in N",
-            ),
-            ("omega_rpm,COF\n7,1\n", "points.csv:1: column COF: no such column; did you mean `mu_star`?"),
             ("omega_rpm,squeals\n7,maybe\n", "points.csv:2: column squeals: maybe: expected yes or no"),
             ("omega_rpm,mu_star\n7,NaN\n", "points.csv:2: column mu_star: NaN: expected a number"),
             ("omega_rpm,mu_star\n-7,0.3\n", "points.csv:2: column omega_rpm: -7: expected a number > 0"),

@@ -21,6 +21,7 @@ mod error;
 mod export;
 mod forecast;
 mod growth;
+mod header;
 mod history;
 mod measured;
 mod numerics;
