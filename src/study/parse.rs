@@ -93,15 +93,14 @@ impl Study {
         let (mut value, mut source) = SourceText::read(text, source_name)?;
         refuse(source.repeated_keys())?;
         refuse(long_lists(&value, &source))?;
-        // Once for what a file is read by, and once for what the file has.
         refuse(with_unit::in_study(&mut value, &source))?;
         for with_file in [height_file::with_heights, mesh_file::with_mesh, samples::with_points] {
             if reads_files && let Some(text) = with_file(&value, &source)? {
                 let (with_content, read) = SourceText::read(&text, source_name)?;
                 (value, source) = (with_content, read.at_places_of(&source));
+                refuse(with_unit::in_study(&mut value, &source))?;
             }
         }
-        refuse(with_unit::in_study(&mut value, &source))?;
         let template = StudyFile::template();
         let Decoded { value: file, mismatches } = decode_all::<StudyFile>(&value, &template);
         let mut problems: Vec<_> =

@@ -127,14 +127,14 @@ impl Unit {
 /// The longest text of a number with a unit \[byte\]. A longer one is quoted in part by the message about its type.
 const LONGEST: usize = 64;
 
-/// The number in `unit` that a text means; none if it is no number that something follows.
+/// The number in `unit` that a text means. Returns `None` if it is no number with something behind it.
 fn number(text: &str, unit: &str) -> Option<Result<f64, String>> {
     let (digits, given) =
         parts(text.trim()).filter(|_| text.len() <= LONGEST && !text.contains(char::is_control))?;
     Some(convert(digits, given, unit))
 }
 
-/// A number and what follows it, if that may be a unit.
+/// A number and what is behind it. Returns `None` if that cannot be a unit.
 fn parts(text: &str) -> Option<(&str, &str)> {
     let is_of_number = |c: char| c.is_ascii_digit() || "+-.,".contains(c);
     let mut end = text.find(|c: char| !is_of_number(c)).unwrap_or(text.len());

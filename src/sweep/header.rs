@@ -31,7 +31,7 @@ fn meant_name<'a>(name: &str, known: &'a [String]) -> Option<&'a str> {
         .or_else(|| misspelt_name(bare, known()))
 }
 
-/// The question whether a header means one of the `known` names; none if it is like none of them.
+/// The question whether a header means one of the `known` names. Returns `None` if it is like none of them.
 pub(super) fn suggestion(name: &str, known: &[String]) -> Option<String> {
     let meant = meant_name(name, known)?;
     let unit = name_and_unit(meant).1;

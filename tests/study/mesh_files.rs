@@ -120,10 +120,15 @@ fn abaqus() -> String {
 
 /// The job of a study beside the file of a mesh.
 fn job(text: &str, name: &str, pin: &str) -> Result<JobSpec, String> {
+    job_in_unit(text, name, pin, "0.001")
+}
+
+/// As [`job`], with the length of a unit of the file.
+fn job_in_unit(text: &str, name: &str, pin: &str, length_unit_m: &str) -> Result<JobSpec, String> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(name), text).unwrap();
     let study = format!(
-        r#"{{ "scene": {{ "pin": {{ "shape": "mesh", "mesh": {{ "file": "{name}", "length_unit_m": 0.001 }}{pin} }} }},
+        r#"{{ "scene": {{ "pin": {{ "shape": "mesh", "mesh": {{ "file": "{name}", "length_unit_m": {length_unit_m} }}{pin} }} }},
             "grid": {{ "mu": [0.3] }} }}"#
     );
     let place = folder.path().join("study.json");
@@ -331,6 +336,9 @@ fn equal_meshes_have_equal_keys() {
     let key = |text: &str, pin: &str| job_key(&job(text, "pin.msh", pin).unwrap(), "1");
     let expected = key(&gmsh(), "");
     assert_eq!(key(&gmsh(), r#", "size_m": [0.012001, 0.015, 0.01]"#), expected);
+    let sized = r#", "size_m": ["12 mm", "15 mm", "1 cm"]"#;
+    let in_texts = job_in_unit(&gmsh(), "pin.msh", sized, "\"1 mm\"").unwrap();
+    assert_eq!(job_key(&in_texts, "1"), expected);
     assert_eq!(key(&gmsh(), r#", "elements": [3, 3, 3]"#), expected);
     assert_eq!(key(&gmsh().replace("pin body", "block"), ""), expected);
     assert_eq!(key(&gmsh().replace("\n52 ", "\n1052 "), ""), expected);
