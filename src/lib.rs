@@ -73,6 +73,8 @@
 //! * `sweep` – [`sweep`], with `queue` and `report`.
 //! * `cli` – [`cli`] and the command, with `sweep`.
 
+#[cfg(feature = "sweep")]
+pub mod calibration;
 #[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "cli")]

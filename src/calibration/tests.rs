@@ -1,0 +1,133 @@
+//! History matching of functions that are known exactly.
+
+use super::*;
+
+/// Places that fill the unit cube: multiples of irrational numbers (Roberts' sequence).
+fn even(seed: usize, count: usize, parameters: usize) -> Vec<Vec<f64>> {
+    // The positive root of x^(d+1) = x + 1.
+    let mut root = 1.5_f64;
+    for _ in 0..60 {
+        root = (1.0 + root).powf(1.0 / (parameters as f64 + 1.0));
+    }
+    let coordinate =
+        |number: usize, k: i32| (0.5 + 0.137 * seed as f64 + number as f64 / root.powi(k)).fract();
+    (1..=count).map(|number| (1..=parameters as i32).map(|k| coordinate(number, k)).collect()).collect()
+}
+
+/// A pin of numbers: μ* and frequency at a speed for a place, with a threshold below which it slides steadily.
+fn pin(place: &[f64], speed: f64) -> Outcome {
+    let (mu, stiffness) = (0.2 + 0.4 * place[0], 1.0 + 3.0 * place[1]);
+    let squeals = mu > 0.27;
+    let drop = if squeals { (mu - 0.27) * (1.0 - speed) } else { 0.0 };
+    let value = |value: f64| Some(Computed { value, mesh_deviation: None });
+    let log_frequency = squeals.then(|| value(0.5 * stiffness.ln() - 0.1 * mu * speed)).flatten();
+    Outcome { squeals: Some(squeals), values: [value(mu - drop), log_frequency] }
+}
+
+fn run(place: Vec<f64>, speeds: &[f64]) -> Run {
+    let outcomes = speeds.iter().map(|speed| Some(pin(&place, *speed))).collect();
+    Run { place, outcomes }
+}
+
+fn measured(truth: &[f64], speeds: &[f64], share: f64) -> Vec<Target> {
+    let target = |speed: &f64| {
+        let outcome = pin(truth, *speed);
+        let of = |computed: Option<Computed>, deviation: fn(f64, f64) -> f64| {
+            computed.map(|own| Measured { value: own.value, deviation: deviation(own.value, share) })
+        };
+        let [mu_star, frequency] = outcome.values;
+        let values = [of(mu_star, |value, share| value * share), of(frequency, |_, share| share)];
+        Target { squeals: outcome.squeals, values }
+    };
+    speeds.iter().map(target).collect()
+}
+
+const SPEEDS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+
+/// Waves until the region is known: the history, the region and the number of runs.
+fn match_history(truth: &[f64], most: usize) -> (History, Region) {
+    let targets = measured(truth, &SPEEDS, 0.02);
+    let mut runs: Vec<Run> = even(0, 16, 2).into_iter().map(|place| run(place, &SPEEDS)).collect();
+    loop {
+        let history = History::new(runs.clone(), targets.clone());
+        let region = history.region(|seed, count| even(seed + 1, count, 2));
+        if history.is_known(&region) || runs.len() >= most {
+            return (history, region);
+        }
+        let next = history.next(&region, 8);
+        assert!(!next.is_empty());
+        runs.extend(next.into_iter().map(|place| run(place, &SPEEDS)));
+    }
+}
+
+/// Protects: the true place is never ruled out, the region is small, and it takes at most 40 runs of two parameters.
+#[test]
+fn the_truth_stays_inside() {
+    for truth in [[0.3, 0.2], [0.5, 0.5], [0.8, 0.9], [0.25, 0.7], [0.95, 0.1]] {
+        let (history, region) = match_history(&truth, 60);
+        let at = history.at(&truth);
+        let worst = at.iter().map(|own| own.implausibility).fold(0.0, f64::max);
+        assert!(worst <= history.cutoff(), "{truth:?}: {worst}");
+        assert!(region.share > 0.0 && region.share < 0.05, "{truth:?}: {}", region.share);
+        for (x, [low, high]) in truth.iter().zip(region.extent()) {
+            assert!(low <= *x && *x <= high, "{truth:?}: {x} from {low} to {high}");
+        }
+        assert!(history.runs().len() <= 40, "{truth:?}: {} runs", history.runs().len());
+    }
+}
+
+/// Protects: values that no place gives leave nothing.
+#[test]
+fn values_that_nothing_explains_leave_nothing() {
+    let mut targets = measured(&[0.5, 0.5], &SPEEDS, 0.02);
+    for target in &mut targets {
+        target.values[LOG_FREQUENCY].as_mut().unwrap().value += 1.0;
+    }
+    let runs: Vec<Run> = even(0, 16, 2).into_iter().map(|place| run(place, &SPEEDS)).collect();
+    let history = History::new(runs, targets);
+    let region = history.region(|seed, count| even(seed + 1, count, 2));
+    assert_eq!((region.share, region.inside.len()), (0.0, 0));
+    assert!(history.is_known(&region) && region.best.unwrap().implausibility > history.cutoff());
+}
+
+/// Protects: steady sliding that was measured rules out places that squeal, and nothing else is needed for it.
+#[test]
+fn steady_sliding_is_data() {
+    let stable = Target { squeals: Some(false), values: [None, None] };
+    let runs: Vec<Run> = even(0, 60, 2).into_iter().map(|place| run(place, &SPEEDS)).collect();
+    let history = History::new(runs, vec![stable; SPEEDS.len()]);
+    let at = |place: [f64; 2]| history.at(&place).iter().map(|own| own.implausibility).fold(0.0, f64::max);
+    assert!(at([0.05, 0.5]) <= history.cutoff() && at([0.6, 0.5]) > history.cutoff());
+}
+
+/// Protects: runs with half the frequency are a branch of their own, and do not spoil the emulator of the others.
+#[test]
+fn a_jump_of_the_frequency_is_another_branch() {
+    let mut runs: Vec<Run> = even(0, 30, 2).into_iter().map(|place| run(place, &SPEEDS)).collect();
+    let halved = |run: &Run| run.place[0] > 0.8;
+    for own in runs.iter_mut().filter(|own| halved(own)) {
+        own.outcomes[2].as_mut().unwrap().values[LOG_FREQUENCY].as_mut().unwrap().value -= 2.0_f64.ln();
+    }
+    assert!(runs.iter().filter(|own| halved(own)).count() >= 2);
+    let truth = [0.5, 0.5];
+    let history = History::new(runs, measured(&truth, &SPEEDS, 0.02));
+    let [_, check] = history.checks();
+    assert!(check.root_mean_square < 1.5, "{check:?}");
+    assert!(history.at(&truth).iter().all(|own| own.implausibility < 1.0));
+}
+
+/// Protects: the cutoff is Pukelsheim's for few values, and grows so that the truth is lost in 5 % of cases at most: for 1000 values the
+/// normal quantile of 1 − 0.05/2000, 4.056 (bisection of erfc in another program).
+#[test]
+fn more_values_have_a_larger_cutoff() {
+    assert!((cutoff(1) - 3.0).abs() < 1.0e-9 && (cutoff(18) - 3.0).abs() < 1.0e-2);
+    assert!((cutoff(1000) - 4.056).abs() < 1.0e-3, "{}", cutoff(1000));
+}
+
+/// Protects: a history without runs has no region.
+#[test]
+fn no_runs_have_no_region() {
+    let history = History::new(Vec::new(), measured(&[0.5, 0.5], &SPEEDS, 0.02));
+    let region = history.region(|seed, count| even(seed, count, 2));
+    assert_eq!(region, Region::default());
+}
