@@ -7,7 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The modules that each top-level module may use besides itself.
-const MAY_USE: [(&str, &[&str]); 16] = [
+const MAY_USE: [(&str, &[&str]); 17] = [
+    ("calibration", &[]),
     ("spec", &[]),
     ("units", &[]),
     ("random", &[]),
@@ -22,7 +23,21 @@ const MAY_USE: [(&str, &[&str]); 16] = [
     ("report", &["analysis", "publish", "random", "units"]),
     ("worker", &["analysis", "queue", "spec", "units"]),
     // Of `publish` it uses drawings and the error of `report`.
-    ("sweep", &["analysis", "publish", "queue", "report", "solver", "spec", "study", "units", "worker"]),
+    (
+        "sweep",
+        &[
+            "analysis",
+            "calibration",
+            "publish",
+            "queue",
+            "report",
+            "solver",
+            "spec",
+            "study",
+            "units",
+            "worker",
+        ],
+    ),
     (
         "cli",
         &[

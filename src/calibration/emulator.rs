@@ -281,7 +281,8 @@ mod tests {
     #[test]
     fn known_values_are_kept() {
         let (places, all): (_, Vec<usize>) = (places(), (0..COUNT).collect());
-        let bent: Vec<f64> = places.iter().map(|x| 1.0 + x[0] - 2.0 * x[1] + (3.0 * x[0] * x[1]).sin()).collect();
+        let bent: Vec<f64> =
+            places.iter().map(|x| 1.0 + x[0] - 2.0 * x[1] + (3.0 * x[0] * x[1]).sin()).collect();
         let mut kernels = Kernels::default();
         let (emulator, _) = kernels.emulator(&all, &places, &bent, &scales()).unwrap();
         for (place, value) in places.iter().zip(&bent) {
@@ -321,8 +322,9 @@ mod tests {
     /// Protects: lengths are found that belong to a function: it varies along its first parameter, and not along the second.
     #[test]
     fn lengths_follow_the_function() {
-        let places: Vec<Vec<f64>> =
-            (1..=40).map(|n| [0.754_877_67, 0.569_840_29].map(|x| (f64::from(n) * x).fract()).to_vec()).collect();
+        let places: Vec<Vec<f64>> = (1..=40)
+            .map(|n| [0.754_877_67, 0.569_840_29].map(|x| (f64::from(n) * x).fract()).to_vec())
+            .collect();
         let values = DVector::from_iterator(40, places.iter().map(|x| (9.0 * x[0]).sin()));
         let scales = best_scales(&[((0..40).collect(), vec![values])], &places, 2);
         assert!(scales.lengths[0] < 0.3 * scales.lengths[1], "{scales:?}");

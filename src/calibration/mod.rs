@@ -18,7 +18,7 @@ mod states;
 
 pub use region::{Candidate, Region};
 
-use emulator::{Emulator, Kernels, LeaveOneOut};
+use emulator::{Kernels, LeaveOneOut};
 use states::States;
 
 /// The number of quantities of a measured point.

@@ -37,6 +37,8 @@ struct State {
     values: [Option<Emulator>; QUANTITIES],
     /// The errors that the mesh makes in the values of runs, where they are known, with the numbers of the runs.
     mesh: [Vec<(usize, f64)>; QUANTITIES],
+    /// The largest one that is known in such a state at any measured point, where it is known of none here.
+    largest_mesh: [f64; QUANTITIES],
 }
 
 /// The runs of a state before there are emulators.
@@ -107,12 +109,16 @@ pub(super) fn all(
             .then(|| labelled(&draft.runs, &draft.others, &places, &labels, kernels))
             .flatten();
         let mesh = std::array::from_fn(|quantity| {
-            let known = |at: &usize| {
-                Some((*at, outcome(&runs[*at], draft.target)?.values[quantity]?.mesh_deviation?))
-            };
+            let known = |at: &usize| Some((*at, mesh_of(draft, *at, quantity, runs)?));
             draft.runs.iter().filter_map(known).collect()
         });
-        let state = State { squeals: draft.squeals, is_branch, values, mesh };
+        let largest_mesh = std::array::from_fn(|quantity| {
+            let alike = drafts.iter().filter(|other| other.squeals == draft.squeals);
+            let known = alike
+                .flat_map(|other| other.runs.iter().filter_map(|at| mesh_of(other, *at, quantity, runs)));
+            known.fold(0.0, f64::max)
+        });
+        let state = State { squeals: draft.squeals, is_branch, values, mesh, largest_mesh };
         states[draft.target].states.push(state);
     }
     states
@@ -120,6 +126,11 @@ pub(super) fn all(
 
 fn outcome(run: &Run, target: usize) -> Option<&Outcome> {
     run.outcomes.get(target)?.as_ref()
+}
+
+/// The error that the mesh makes in a quantity of a run, if it is known.
+fn mesh_of(draft: &Draft, at: usize, quantity: usize, runs: &[Run]) -> Option<f64> {
+    outcome(&runs[at], draft.target)?.values[quantity]?.mesh_deviation
 }
 
 /// The runs of a state that have a quantity, with its values.
@@ -207,14 +218,18 @@ fn wrong_side((mean, deviation): (f64, f64), is_wanted: bool) -> f64 {
 
 impl State {
     /// The standard deviation of the error that the mesh makes at a place: the largest of those of the nearest runs, one more than there are
-    /// parameters. None if no run knows its own.
-    fn mesh_at(&self, place: &[f64], quantity: usize, runs: &[Run]) -> Option<f64> {
+    /// parameters. If none of the state knows its own, that of the other measured points.
+    fn mesh_at(&self, place: &[f64], quantity: usize, runs: &[Run]) -> f64 {
         let distance =
             |at: usize| -> f64 { runs[at].place.iter().zip(place).map(|(a, b)| (a - b).powi(2)).sum() };
         let mut near: Vec<(f64, f64)> =
             self.mesh[quantity].iter().map(|(at, error)| (distance(*at), *error)).collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        near.iter().take(place.len() + 1).map(|(_, error)| *error).reduce(f64::max)
+        near.iter()
+            .take(place.len() + 1)
+            .map(|(_, error)| *error)
+            .reduce(f64::max)
+            .unwrap_or(self.largest_mesh[quantity])
     }
 }
 
@@ -234,7 +249,7 @@ impl States {
                 let (Some(emulator), Some(measured)) = (emulator, measured) else { continue };
                 let (mean, deviation) = emulator.at(near);
                 let mesh = state.mesh_at(place, quantity, runs);
-                let expected = Expected { mean, emulator: deviation, mesh: mesh.unwrap_or(0.0) };
+                let expected = Expected { mean, emulator: deviation, mesh };
                 let own = expected.implausibility(measured);
                 all.implausibility = all.implausibility.max(own);
                 all.square_sum += own.powi(2);

@@ -1,6 +1,7 @@
 //! The command line: arguments, messages and exit codes. Each subcommand has a file. Results go to standard output,
 //! everything else to standard error. The work is done by [`sweep`](crate::sweep).
 
+mod calibrate;
 mod cancel;
 mod columns;
 mod completions;
@@ -90,6 +91,9 @@ enum Command {
     Pareto(pareto::Args),
     /// Show how much each parameter of a study decides, from its own jobs.
     Sensitivity(sensitivity::Args),
+    /// Find the values of free parameters that measured points do not rule out: waves of jobs, their emulators, and the region that is
+    /// left.
+    Calibrate(calibrate::Args),
     /// Write one row per job of one, several or all studies as CSV or JSON lines.
     Export(export::Args),
     /// Print the columns of the export with their units and meanings.
@@ -179,6 +183,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Report(args) => report::run(&args, db),
         Command::Pareto(args) => pareto::run(&args, db),
         Command::Sensitivity(args) => sensitivity::run(&args, db),
+        Command::Calibrate(args) => calibrate::run(&args, db),
         Command::Export(args) => export::run(&args, db),
         Command::Columns(args) => columns::run(&args),
         Command::Show(args) => show::run(&args, db),

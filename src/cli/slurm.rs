@@ -25,7 +25,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let grows = plan.study().growth().is_any();
     if grows && !database.is_shared() {
         return Err(CliError::Usage(
-            "a study with `refine` or `continue` needs one database for all workers: give that of a server with --db postgres://…"
+            "a study with `refine`, `continue` or `calibrate` needs one database for all workers: give that of a server with --db postgres://…"
                 .to_owned(),
         ));
     }

@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use super::foreground::{parse_accuracy, parse_preset, parse_setting};
-use crate::study::{Basins, Changes, Preset};
+use crate::study::{Basins, Calibration, Changes, Preset};
 use crate::sweep::Plan;
 use std::path::PathBuf;
 
@@ -56,10 +56,30 @@ impl StudyArgs {
         Ok(Plan::load_changed(&self.file, &Changes { is_of_modes: true, ..self.changes() })?)
     }
 
+    /// Reads and checks the study of a calibration. `settings` are those of the measured points; `--set` comes after them.
+    pub(crate) fn plan_of_calibration(
+        &self,
+        calibration: Calibration,
+        settings: Vec<(String, String)>,
+    ) -> Result<Plan, CliError> {
+        if self.basins.is_some() {
+            return Err(CliError::Usage("--basins is for `run` and `submit`".to_owned()));
+        }
+        let own = self.changes();
+        if let Some((name, _)) =
+            own.settings.iter().find(|(name, _)| settings.iter().any(|(other, _)| other == name))
+        {
+            return Err(CliError::Usage(format!("--set {name}: the measured points have this parameter")));
+        }
+        let settings = settings.into_iter().chain(own.settings.iter().cloned()).collect();
+        let changes = Changes { settings, calibration: Some(calibration), ..own };
+        Ok(Plan::load_changed(&self.file, &changes)?)
+    }
+
     fn changes(&self) -> Changes {
         let (name, settings) =
             (self.name.clone(), self.accuracy.iter().chain(&self.settings).cloned().collect());
         let basins = self.basins.zip(self.kick_m_s).map(|(kicks, kick_m_s)| Basins { kicks, kick_m_s });
-        Changes { name, preset: self.preset, settings, is_of_modes: false, basins }
+        Changes { name, preset: self.preset, settings, is_of_modes: false, basins, calibration: None }
     }
 }

@@ -2,7 +2,9 @@
 
 use super::columns::{any_quantity, columns, selected};
 use super::figure::{DataFile, Plot, RESIDUALS, RUN_TIMES};
-use super::{comparison_files, growth, pareto, sensitivity, spectra, stability, tables, windows};
+use super::{
+    calibration, comparison_files, growth, pareto, sensitivity, spectra, stability, tables, windows,
+};
 use crate::publish::table::{FileColumns, Head};
 
 /// The columns of all tables of reports but the export, for the page of columns. Parameters of a study follow.
@@ -35,6 +37,7 @@ pub fn columns_of_files() -> Vec<FileColumns> {
         .chain(data)
         .chain([comparison_files::described(), windows::described(), spectra::described()])
         .chain(growth::described())
+        .chain(calibration::described())
         .chain(sensitivity::described())
         .chain(pareto::described())
         .chain(stability::described())

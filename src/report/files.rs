@@ -1,5 +1,6 @@
 //! The report as a folder of files.
 
+use super::calibration::{self, Calibration};
 use super::comparison::Comparison;
 use super::comparison_files;
 use super::explore;
@@ -223,7 +224,11 @@ fn write_data(
 /// Writes the tables of what a study that grows has found.
 fn write_findings(folder: &mut Folder, report: &Report) -> Result<(), PublishError> {
     let mut tables = report.findings.iter().flat_map(|own| own.tables());
-    tables.try_for_each(|found| folder.write_table(&found.table).map(drop))
+    tables.try_for_each(|found| folder.write_table(&found.table).map(drop))?;
+    match report.findings.and_then(|own| own.calibration.as_ref()).and_then(Calibration::chart) {
+        Some(chart) => folder.write_text(calibration::PAIRS, &chart.svg(calibration::TITLE)),
+        None => Ok(()),
+    }
 }
 
 /// Writes the figures and the windows of the jobs whose speed or load changes in time; none if there are no such jobs.

@@ -1,5 +1,6 @@
 //! What a study that grows has found: boundaries, minima, branches and basins.
 
+use super::calibration::Calibration;
 use super::parameters;
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::publish::table::{Column, FileColumns, Table};
@@ -195,6 +196,8 @@ pub struct Findings {
     pub branches: Vec<BranchPoint>,
     /// States that were reached from single points.
     pub basins: Vec<Basin>,
+    /// What measured points say about free parameters.
+    pub calibration: Option<Calibration>,
 }
 
 /// A table of findings.
@@ -384,7 +387,8 @@ impl Findings {
                 table: table("basins", &self.basins, |own| own.parameters.clone(), &BASINS),
             },
         ];
-        tables.into_iter().filter(|found| !found.table.lines.is_empty()).collect()
+        let own = self.calibration.iter().flat_map(Calibration::tables);
+        tables.into_iter().filter(|found| !found.table.lines.is_empty()).chain(own).collect()
     }
 
     /// What was found, in sentences.
@@ -421,6 +425,7 @@ impl Findings {
             let (with, all) = (ways().filter(|has| *has).count(), value::count(ways().count(), "point"));
             words.push(format!("The way up and the way down end in different states at {with} of {all}."));
         }
+        words.extend(self.calibration.iter().flat_map(Calibration::in_words));
         words
     }
 

@@ -8,12 +8,13 @@
 //! * [`figure`] – curves against speed, maps over speed and friction, shares and residuals, as SVG.
 //! * [`overview`] – a letter for every job, for a terminal.
 //! * [`pareto`] – error against run time of jobs that differ in their numerics only.
-//! * [`Findings`] – boundaries, minima, branches and basins of studies that grow.
+//! * [`Findings`] – boundaries, minima, branches and basins of studies that grow, and the region of a calibration.
 //! * [`trouble`] – where in the grid jobs fail or do not become periodic, and why.
 //! * [`write_stability`] – the linear stability of steady sliding: maps, branches of modes, thresholds.
 //! * [`write()`] – a folder with all of it, and a page for a browser that contains all of it.
 
 pub mod accuracy;
+mod calibration;
 pub mod columns;
 mod comparison;
 mod comparison_files;
@@ -52,6 +53,7 @@ mod view;
 mod windows;
 mod words;
 
+pub use calibration::{Calibration, Check, Datum, Fit, Free, Nearest};
 pub use described::columns_of_files;
 pub use files::{Written, write, write_compared};
 pub use growth::{Basin, BranchPoint, Crossing, Endpoint, Findings, Minimum, basins};

@@ -31,7 +31,11 @@ impl Study {
                 None => own.directions.len() * self.grid_size(),
                 Some(kicks) => self.grid_size() * (1 + kicks as usize),
             }),
-            Growth { refine: None, continues: None } => None,
+            Growth { calibrate: Some(own), .. } => {
+                let each = self.axes().map(|(_, values)| values.len()).product::<usize>();
+                Some(own.most_points(self.free_parameters().len()) * each)
+            }
+            Growth { refine: None, continues: None, calibrate: None } => None,
         }
     }
 

@@ -1,6 +1,7 @@
-//! Changes of a study by the command line: `--preset`, `--set`, `--basins` and `--name`.
+//! Changes of a study by the command line: `--preset`, `--set`, `--basins`, `--free` and `--name`.
 
 use super::axis::{Axis, check_type};
+use super::calibrate::Calibration;
 use super::error::Problem;
 use super::file::StudyFile;
 use super::outline::Outline;
@@ -25,6 +26,9 @@ pub struct Changes {
     /// Random velocities from each point of the study, instead of what it says about further jobs. Without a `name`, the study is then
     /// called `NAME-basins`.
     pub basins: Option<Basins>,
+    /// Measured points that rule out values of free parameters, instead of what the study says about further jobs. Without a `name`, the
+    /// study is then called `NAME-calibration`.
+    pub calibration: Option<Calibration>,
 }
 
 /// Random velocities to find the limit cycles that can be reached from a point.

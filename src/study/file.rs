@@ -1,5 +1,6 @@
 //! The shape of a study file.
 
+use super::calibrate::Calibrate;
 use super::damping::Damping;
 use super::grid_schema::{conditions_schema, grid_schema};
 use super::growth::{Continue, Refine};
@@ -76,6 +77,10 @@ pub(super) struct StudyFile {
     #[serde(rename = "continue", skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "Continue")]
     pub continues: Option<Continue>,
+    /// Measured points, and the search for the values of parameters that explain them.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(with = "Calibrate")]
+    pub calibrate: Option<Calibrate>,
     /// Axes and quantities of the report.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "ReportAxes")]

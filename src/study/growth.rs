@@ -1,5 +1,6 @@
 //! Studies that grow: what a study file says about jobs that depend on the results of others.
 
+use super::calibrate::Calibrate;
 use super::error::Problem;
 use super::limits::MAX_JOBS;
 use super::parameter::{Kind, PARAMETERS, Parameter};
@@ -159,7 +160,12 @@ pub struct Growth {
     pub refine: Option<Refine>,
     /// Jobs that continue others.
     pub continues: Option<Continue>,
+    /// Points that measured values do not rule out.
+    pub calibrate: Option<Calibrate>,
 }
+
+/// The fields of a study file that let it grow. A study has at most one of them.
+pub(super) const FIELDS: [&str; 3] = ["refine", "continue", "calibrate"];
 
 fn mu_star() -> String {
     "mu_star".to_owned()
@@ -176,7 +182,7 @@ fn number_schema(_: &mut SchemaGenerator) -> Schema {
 impl Growth {
     /// Whether there is any.
     pub fn is_any(&self) -> bool {
-        self.refine.is_some() || self.continues.is_some()
+        self.refine.is_some() || self.continues.is_some() || self.calibrate.is_some()
     }
 
     /// What is wrong with it in a study that varies these parameters and has `size` points. The names of quantities are not known here.
@@ -201,8 +207,10 @@ impl Growth {
                 format!("expected at most {most_kicks}, so that the study has at most {MAX_JOBS} jobs");
             found.push(source.problem("continue.kicks", message));
         }
-        if self.refine.is_some() && self.continues.is_some() {
-            found.push(source.problem("continue", "expected only one of `refine` and `continue`"));
+        let given = [self.refine.is_some(), self.continues.is_some(), self.calibrate.is_some()];
+        let mut given = FIELDS.into_iter().zip(given).filter(|(_, is_given)| *is_given);
+        if let (Some((first, _)), Some((second, _))) = (given.next(), given.next()) {
+            found.push(source.problem(second, format!("expected only one of `{first}` and `{second}`")));
         }
         let mut along = |field: &str, name: &str| {
             let numbers = || varied.iter().filter(|parameter| matches!(parameter.kind, Kind::Number));

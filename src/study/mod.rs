@@ -15,6 +15,7 @@
 //! Messages name the file, line and column, the field, its value and what is expected.
 
 mod axis;
+mod calibrate;
 mod chains;
 mod change;
 mod conditions;
@@ -59,6 +60,7 @@ mod time_defaults;
 mod validate;
 mod with_unit;
 
+pub use calibrate::{Calibrate, Calibration, Discrepancy, FreeParameter, MeasuredPoint, sobol_points};
 pub use chains::chains_of;
 pub use change::{Basins, Changes};
 pub use definition::Study;

@@ -7,7 +7,7 @@ use super::definition::Study;
 use super::error::{Problem, StudyError};
 use super::file::StudyFile;
 use super::grid::Grid;
-use super::growth::{Continue, Growth};
+use super::growth::{Continue, FIELDS, Growth};
 use super::height_file;
 use super::json::{Decoded, decode_all};
 use super::limits::MAX_JOBS;
@@ -134,11 +134,13 @@ impl Study {
         if changes.is_of_modes && problems.is_empty() {
             outline.ask_for_modes()?;
         }
-        let mut growth = Growth { refine: file.refine, continues: file.continues };
+        let mut growth = Growth { refine: file.refine, continues: file.continues, calibrate: file.calibrate };
         if changes.is_of_modes {
             growth = Growth::default();
         } else if let Some(basins) = changes.basins.filter(|_| problems.is_empty()) {
             growth = outline.ask_for_basins(basins, changes.name.is_some())?;
+        } else if let Some(own) = changes.calibration.as_ref().filter(|_| problems.is_empty()) {
+            growth = outline.ask_for_calibration(own, growth.calibrate.as_ref(), changes.name.is_some())?;
         }
         // The jobs are judged only when every field has been read: a limit may depend on several of them.
         if problems.is_empty() {
@@ -163,6 +165,7 @@ impl Study {
             return Err(StudyError::Invalid(vec![source.problem(field, message)]));
         }
         refuse(growth.problems(&grid.parameters().collect::<Vec<_>>(), grid.size(), &source))?;
+        refuse(growth.calibrate.as_ref().map_or_else(Vec::new, |own| own.problems(&grid, &source)))?;
         let (specs, mut violations): (Vec<_>, Vec<_>) =
             grid.resolve(&draft).into_iter().map(|job| (job.spec, job.violations)).unzip();
         if !allows_modes {
@@ -193,7 +196,7 @@ impl Study {
 
 impl Outline {
     /// The study's name: as given, or the stem of the file's name.
-    fn name(&self) -> Result<String, Vec<Problem>> {
+    pub(super) fn name(&self) -> Result<String, Vec<Problem>> {
         name(self.document.get("name").and_then(Value::as_str).map(str::to_owned), &self.source)
     }
 
@@ -230,8 +233,7 @@ impl Outline {
         self.grid.axes.retain(|axis| axis.parameter.name != STABILITY);
         if let Value::Object(fields) = &mut self.document {
             // The command looks for boundaries of its own.
-            fields.remove("refine");
-            fields.remove("continue");
+            fields.retain(|name, _| !FIELDS.contains(&name.as_str()));
             fields.insert("name".to_owned(), name.into());
             fields.insert(STABILITY.to_owned(), StabilityMethod::Modes.name().into());
         }
@@ -252,11 +254,11 @@ impl Outline {
             .extend([Change::of_name("--basins", &name), Change::of_growth("--basins", &text)]);
         if let Value::Object(fields) = &mut self.document {
             fields.insert("name".to_owned(), name.into());
-            fields.remove("refine");
+            fields.retain(|name, _| !FIELDS.contains(&name.as_str()));
             fields.insert("continue".to_owned(), json!({ "kicks": kicks, "kick_m_s": kick_m_s }));
         }
         let continues = Continue { kicks: Some(kicks), kick_m_s: Some(kick_m_s), ..Continue::default() };
-        Ok(Growth { refine: None, continues: Some(continues) })
+        Ok(Growth { continues: Some(continues), ..Growth::default() })
     }
 
     /// Refuses a grid that has become too large.

@@ -1,6 +1,7 @@
 //! The text of a study file: turns field paths into positions and values for messages.
 
 use super::error::{Problem, StudyError};
+use super::growth::FIELDS;
 use super::json::{NUMBER, TypeMismatch, number_hint};
 use super::locate::{self, FieldSpan, FieldSpans, NotJson, Position, RepeatedKey, join};
 use super::parameter::Parameter;
@@ -49,7 +50,7 @@ impl Change {
 
     /// What the study says about further jobs.
     pub(super) fn of_growth(place: &str, text: &str) -> Self {
-        let fields = ["continue", "refine"].map(str::to_owned).to_vec();
+        let fields = FIELDS.map(str::to_owned).to_vec();
         Self { place: place.to_owned(), fields, text: text.to_owned() }
     }
 

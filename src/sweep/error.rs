@@ -12,6 +12,9 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SweepError {
+    /// A file of measured points that a calibration cannot use.
+    #[error("{0}")]
+    CalibrationData(String),
     /// The study or the selection of one of its jobs.
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -105,7 +108,7 @@ pub enum SweepError {
     },
     /// A study that grows is to be divided between databases.
     #[error(
-        "a study with `refine` or `continue` cannot be divided into shards: its next jobs depend on the results of all"
+        "a study with `refine`, `continue` or `calibrate` cannot be divided into shards: its next jobs depend on the results of all"
     )]
     GrowingShard,
     /// A source of a comparison is given twice.

@@ -2,6 +2,7 @@
 
 use crate::publish::page::{Block, Figure, Grid, MOST_DATA, Section, Text};
 use crate::publish::value;
+use crate::report::calibration::{self, Calibration};
 use crate::report::comparison::Comparison;
 use crate::report::growth::Findings;
 use crate::report::program::{self, Programs};
@@ -63,6 +64,9 @@ pub(super) fn programs(own: &Programs) -> Section {
     Section::new("program", "Speed and load in time", blocks)
 }
 
+const REGION: &str = "Pairs of the free parameters. Dots fill the region that the measured values do not rule out, circles are the points that \
+                      were run, and the star is the run that fits best.";
+
 /// What a study that grows has found.
 pub(super) fn growth(own: &Findings) -> Section {
     let mut blocks = vec![Block::Text(own.state.as_str().into())];
@@ -70,6 +74,14 @@ pub(super) fn growth(own: &Findings) -> Section {
         blocks.push(Block::Heading(found.heading.to_owned()));
         blocks.push(Block::text(found.meaning));
         blocks.push(Block::Table(Grid::of_table(&found.table)));
+    }
+    if let Some(chart) = own.calibration.as_ref().and_then(Calibration::chart) {
+        blocks.push(Block::figure(Figure {
+            file: calibration::PAIRS.to_owned(),
+            svg: chart.svg(calibration::TITLE),
+            caption: REGION.to_owned(),
+            data: None,
+        }));
     }
     Section::new("findings", "What was found", blocks)
 }

@@ -80,6 +80,21 @@ impl Distribution {
         (!holds).then(|| format!("expected {right}"))
     }
 
+    /// The share of the distribution below a value: the inverse of [`Distribution::value`]. That of a value of a list is 0.
+    pub fn share(&self, value: f64) -> f64 {
+        let share = match self {
+            Self::Uniform([low, high]) => (value - low) / (high - low),
+            Self::LogUniform([low, high]) => libm::log(value / low) / libm::log(high / low),
+            Self::Normal([mean, deviation]) => normal_share((value - mean) / deviation),
+            Self::TruncatedNormal([mean, deviation, low, high]) => {
+                let [at, from, to] = [&value, low, high].map(|x| normal_share((x - mean) / deviation));
+                (at - from) / (to - from)
+            }
+            Self::Discrete(_) => 0.0,
+        };
+        share.clamp(0.0, 1.0)
+    }
+
     /// Whether it has two ends, which a design with levels needs.
     pub fn is_bounded(&self) -> bool {
         !matches!(self, Self::Normal(_))
@@ -145,5 +160,12 @@ mod tests {
         let discrete = Distribution::Discrete(vec![1.into(), 2.into(), 4.into()]);
         assert_eq!([0.0, 0.32, 0.34, 0.99, 1.0].map(|u| number(&discrete, u)), [1.0, 1.0, 2.0, 4.0, 4.0]);
         assert_eq!(Distribution::Uniform([4.0, 9.0]).value(0.5, &Kind::Count), Value::from(7));
+        // Shares are the inverse, to the digits that a value has.
+        let others = [Distribution::Uniform([-1.0, 3.0]), Distribution::LogUniform([1.0e9, 4.0e9])];
+        for own in [normal, truncated].iter().chain(&others) {
+            for u in [0.01, 0.3, 0.5, 0.99] {
+                assert!((own.share(number(own, u)) - u).abs() < 1e-7, "{own:?} {u}");
+            }
+        }
     }
 }

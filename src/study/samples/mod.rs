@@ -25,8 +25,15 @@ pub(super) struct Samples {
     pub parameters: Vec<&'static Parameter>,
     /// The values of each point, in the order of the parameters.
     pub rows: Vec<Vec<Value>>,
+    /// The distributions of a design, in the order of the parameters; none without a design.
+    pub distributions: Vec<Distribution>,
     /// As a study file has them.
     written: Value,
+}
+
+/// So many points of Sobol's sequence in the unit cube.
+pub(super) fn sobol_points(count: usize, parameters: usize, seed: u64) -> Vec<Vec<f64>> {
+    Design::Sobol.unit_points(count.min(MOST_SOBOL), parameters, seed)
 }
 
 /// The field of a study file.
@@ -57,18 +64,25 @@ impl SamplesFile {
                 return refuse(name, "expected it beside `design` only".to_owned());
             }
         }
+        let mut distributions = Vec::new();
         let (parameters, rows) = match (&self.points, &self.zip, self.design) {
             (Some(points), ..) => listed(points, template, source)?,
             (_, Some(zip), _) => zipped(zip, template, source)?,
-            (.., Some(design)) => self.drawn(design, template, source)?,
+            (.., Some(design)) => self.drawn(design, template, source, &mut distributions)?,
             // A file has been read before.
             _ => return refuse("file", "expected a study that is read from a file".to_owned()),
         };
         let written = serde_json::to_value(self).expect("plain data with string keys");
-        Ok(Samples { parameters, rows, written })
+        Ok(Samples { parameters, rows, distributions, written })
     }
 
-    fn drawn(&self, design: Design, template: &Value, source: &SourceText) -> Result<Table, Vec<Problem>> {
+    fn drawn(
+        &self,
+        design: Design,
+        template: &Value,
+        source: &SourceText,
+        distributions: &mut Vec<Distribution>,
+    ) -> Result<Table, Vec<Problem>> {
         let refuse = |field: &str, message: &str| Err(vec![source.problem(&join(SAMPLES, field), message)]);
         let Some(of) = self.of.as_ref().filter(|of| !of.is_empty()) else {
             return refuse(
@@ -88,7 +102,6 @@ impl SamplesFile {
         let field = join(SAMPLES, "of");
         let parameters = known(of.keys(), &field, source)?;
         let mut problems = Vec::new();
-        let mut distributions = Vec::new();
         for parameter in &parameters {
             let path = join(&field, parameter.name);
             let Ok(distribution) = serde_json::from_value::<Distribution>(of[parameter.name].clone()) else {
@@ -125,7 +138,7 @@ impl SamplesFile {
             let value = |(parameter, distribution): (&&'static Parameter, &Distribution)| {
                 distribution.value(point[coordinate_of(parameter)], &parameter.kind)
             };
-            parameters.iter().zip(&distributions).map(value).collect()
+            parameters.iter().zip(distributions.iter()).map(value).collect()
         };
         let rows = points.into_iter().map(row).collect();
         Ok((parameters, rows))
@@ -276,6 +289,8 @@ impl Samples {
             return None;
         }
         self.parameters = kept.iter().map(|&at| self.parameters[at]).collect();
+        // What is left is a list of points.
+        self.distributions.clear();
         let mut known = HashSet::new();
         let rows =
             self.rows.iter().map(|row| -> Vec<Value> { kept.iter().map(|&at| row[at].clone()).collect() });

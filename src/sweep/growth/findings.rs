@@ -1,6 +1,6 @@
 //! What a study that grows has found so far.
 
-use super::refine;
+use super::{calibrate, refine};
 use crate::queue::{PlanState, PlanStatus, Queue};
 use crate::report::{BranchPoint, Endpoint, Findings, JobRow, RowState, basins};
 use crate::study::{Continue, DIRECTION, Direction, KICK, Study};
@@ -28,6 +28,7 @@ pub async fn read_growth(
         found.crossings = boundaries.flat_map(|own| refine::crossings(&study, own, rows)).collect();
         found.minima = curves.flat_map(|own| refine::minima(&study, own, rows)).collect();
     }
+    found.calibration = growth.calibrate.as_ref().map(|own| calibrate::found(&study, own, rows));
     match &growth.continues {
         Some(Continue { along: Some(_), .. }) => found.branches = branches(rows),
         Some(_) => found.basins = basins_of(rows),

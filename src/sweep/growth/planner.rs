@@ -1,12 +1,12 @@
 //! What a worker asks when a wave of a study is due.
 
 use super::refine::Wanted;
-use super::{chains, refine};
+use super::{calibrate, chains, refine};
 use crate::publish::value::count;
 use crate::queue::{NewJob, PlanClaim, Planned, StudyRow};
 use crate::report::JobRow;
 use crate::solver;
-use crate::study::{Job, Study};
+use crate::study::{Continue, Growth, Job, Study};
 use crate::sweep::error::SweepError;
 use crate::sweep::plan::{Added, added_jobs};
 use crate::sweep::rows::report_row;
@@ -51,39 +51,39 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
         return Ok(Planned::Failed { error });
     }
     if let Some(continues) = &growth.continues {
-        let jobs = chains::next_jobs(&study, continues, &rows)?;
-        if jobs.is_empty() {
-            let missing = study.most_jobs().unwrap_or(0).saturating_sub(rows.len());
-            let stopped = if missing == 0 {
-                String::new()
-            } else {
-                format!("; {} missing, because jobs before them failed", count(missing as u64, "job"))
-            };
-            return Ok(Planned::Complete { note: format!("all chains have ended{stopped}") });
-        }
-        let note = format!("{}: {}", chains::PURPOSE, jobs.len());
-        let jobs: Vec<(Job, Added)> = jobs.into_iter().map(|job| (job, added(chains::PURPOSE))).collect();
-        let jobs: Vec<NewJob> = added_jobs(&claim.study, &jobs)?.into_iter().map(|(job, _)| job).collect();
-        if jobs.is_empty() {
-            return Ok(Planned::Complete { note: "the solver refuses every further job".to_owned() });
-        }
-        return Ok(Planned::Wave { jobs, note });
+        return plan_chains(claim, &study, continues, &rows);
     }
-    let Some(settings) = &growth.refine else {
-        return Ok(Planned::Complete { note: "the study does not grow".to_owned() });
-    };
-    let (wanted, given_up) = refine::wanted(&study, settings, &rows);
-    if wanted.is_empty() {
-        let note = match given_up {
-            0 => "everything is known as well as it is asked for".to_owned(),
-            given_up => {
-                let intervals = count(given_up as u64, "interval");
-                format!("the rest is known; {intervals} given up, because several jobs inside have no value")
+    let (wanted, most, most_jobs) = match growth {
+        Growth { calibrate: Some(settings), .. } => match calibrate::next(&study, settings, &rows) {
+            calibrate::Next::Ended(note) => return Ok(Planned::Complete { note }),
+            calibrate::Next::Points(points) => {
+                let wanted: Vec<Wanted> = points
+                    .into_iter()
+                    .map(|parameters| Wanted { urgency: 1.0, parameters, purpose: calibrate::PURPOSE })
+                    .collect();
+                let most = wanted.len();
+                (wanted, most, study.most_jobs().unwrap_or(0))
             }
-        };
-        return Ok(Planned::Complete { note });
-    }
-    let most = settings.wave_jobs.min(settings.most_jobs.saturating_sub(rows.len()));
+        },
+        Growth { refine: Some(settings), .. } => {
+            let (wanted, given_up) = refine::wanted(&study, settings, &rows);
+            if wanted.is_empty() {
+                let note = match given_up {
+                    0 => "everything is known as well as it is asked for".to_owned(),
+                    given_up => {
+                        let intervals = count(given_up as u64, "interval");
+                        format!(
+                            "the rest is known; {intervals} given up, because several jobs inside have no value"
+                        )
+                    }
+                };
+                return Ok(Planned::Complete { note });
+            }
+            let most = settings.wave_jobs.min(settings.most_jobs.saturating_sub(rows.len()));
+            (wanted, most, settings.most_jobs)
+        }
+        Growth { .. } => return Ok(Planned::Complete { note: "the study does not grow".to_owned() }),
+    };
     let mut known: HashSet<String> = rows.iter().map(|row| row.job.clone()).collect();
     let mut left = wanted.iter();
     let mut jobs: Vec<NewJob> = Vec::new();
@@ -108,7 +108,7 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
     }
     if jobs.is_empty() {
         let why = if most == 0 {
-            format!("the budget of {} is used up", count(settings.most_jobs as u64, "job"))
+            format!("the budget of {} is used up", count(most_jobs as u64, "job"))
         } else {
             "no further point is possible".to_owned()
         };
@@ -117,4 +117,33 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
     }
     let words: Vec<String> = purposes.iter().map(|(purpose, jobs)| format!("{purpose}: {jobs}")).collect();
     Ok(Planned::Wave { jobs, note: words.join(", ") })
+}
+
+/// The next jobs of chains and kicks.
+fn plan_chains(
+    claim: &PlanClaim,
+    study: &Study,
+    continues: &Continue,
+    rows: &[JobRow],
+) -> Result<Planned, SweepError> {
+    let jobs = chains::next_jobs(study, continues, rows)?;
+    if jobs.is_empty() {
+        let missing = study.most_jobs().unwrap_or(0).saturating_sub(rows.len());
+        let stopped = if missing == 0 {
+            String::new()
+        } else {
+            format!("; {} missing, because jobs before them failed", count(missing as u64, "job"))
+        };
+        return Ok(Planned::Complete { note: format!("all chains have ended{stopped}") });
+    }
+    let note = format!("{}: {}", chains::PURPOSE, jobs.len());
+    let jobs: Vec<(Job, Added)> = jobs
+        .into_iter()
+        .map(|job| (job, Added { wave: claim.wave, why: chains::PURPOSE.to_owned() }))
+        .collect();
+    let jobs: Vec<NewJob> = added_jobs(&claim.study, &jobs)?.into_iter().map(|(job, _)| job).collect();
+    if jobs.is_empty() {
+        return Ok(Planned::Complete { note: "the solver refuses every further job".to_owned() });
+    }
+    Ok(Planned::Wave { jobs, note })
 }

@@ -1,0 +1,328 @@
+//! What measured points say about free parameters: the region that they do not rule out.
+
+use super::growth::FindingsTable;
+use super::parameters::{self, assignment, in_words};
+use crate::publish::chart::palette::{BLUE, GREY, VERMILLION};
+use crate::publish::chart::{Axis, Chart, Entry, Layer, Marker, Panel, Point, Scale, Shape};
+use crate::publish::table::{Column, FileColumns, Table};
+use crate::publish::value::{self, count};
+use serde_json::{Map, Value, json};
+
+/// What a calibration has found.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Calibration {
+    /// The free parameters.
+    pub free: Vec<Free>,
+    /// The measured values.
+    pub data: Vec<Datum>,
+    /// The share of the ranges that is not ruled out, weighted by the distributions.
+    pub share: f64,
+    /// The implausibility above which a point is ruled out.
+    pub cutoff: f64,
+    /// Points of the free parameters that were run.
+    pub points: usize,
+    /// Jobs of these points.
+    pub jobs: usize,
+    /// The run that fits best; none if none has a result.
+    pub best: Option<Fit>,
+    /// If everything is ruled out: the place that is least implausible, by the emulators.
+    pub nearest: Option<Nearest>,
+    /// Pairs of parameters by their numbers, with their correlations inside the region.
+    pub correlations: Vec<([usize; 2], f64)>,
+    /// Values of the free parameters inside the region.
+    pub inside: Vec<Vec<f64>>,
+    /// Those of the points that were run.
+    pub run: Vec<Vec<f64>>,
+    /// How well the emulators foretold runs that were left out, by the names of the quantities.
+    pub checks: Vec<Check>,
+    /// The errors of the emulators over all others, as the root mean square over the region for the worst value.
+    pub emulators: f64,
+    /// Values of runs whose error of the mesh is not known, and all of them.
+    pub unknown_mesh: [usize; 2],
+}
+
+/// A free parameter.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Free {
+    /// Its name.
+    pub name: String,
+    /// The ends of its range; those of 99.8 % of a normal distribution.
+    pub range: [f64; 2],
+    /// Whether equal ratios of it are equally likely.
+    pub is_log: bool,
+    /// The ends of the region; none if everything is ruled out.
+    pub region: Option<[f64; 2]>,
+    /// The share of its distribution between the ends of the region.
+    pub left: f64,
+}
+
+/// How well a run fits.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Fit {
+    /// The values of the free parameters.
+    pub values: Vec<f64>,
+    /// The largest distance from a measured value, in standard deviations of measurement, discrepancy and mesh; infinite if it squeals where
+    /// steady sliding was measured, or the other way round.
+    pub largest: f64,
+    /// The root mean square of these distances.
+    pub root_mean_square: f64,
+    /// Measured values that it can be compared with.
+    pub compared: usize,
+    /// Whether the emulators keep its place.
+    pub is_inside: bool,
+}
+
+/// The least implausible place if everything is ruled out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Nearest {
+    /// The values of the free parameters.
+    pub values: Vec<f64>,
+    /// Its implausibility.
+    pub implausibility: f64,
+    /// The measured value that rules it out, by its number.
+    pub worst: usize,
+}
+
+/// A measured value, and what the simulation gives there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Datum {
+    /// The parameters of the measured point.
+    pub place: Vec<(String, Value)>,
+    /// The quantity: a column of the export, or `squeals`.
+    pub of: &'static str,
+    /// The measured value.
+    pub measured: Value,
+    /// Its standard deviation.
+    pub error: Option<f64>,
+    /// The value of the best run.
+    pub best: Option<f64>,
+    /// The smallest and the largest value that emulators expect inside the region.
+    pub band: Option<[f64; 2]>,
+}
+
+/// How well the emulators of a quantity foretold runs that were left out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Check {
+    /// The quantity.
+    pub of: &'static str,
+    /// Values that were left out, one at a time.
+    pub values: usize,
+    /// Those within two standard deviations.
+    pub within_two: usize,
+}
+
+/// Correlations from which on two parameters are not told apart.
+const NOT_TOLD_APART: f64 = 0.8;
+
+/// The share of a distribution from which on the data say nearly nothing about a parameter.
+const NOTHING_SAID: f64 = 0.8;
+
+#[rustfmt::skip]
+const FREE: [Column<(Free, Option<f64>)>; 7] = [
+    Column::new("parameter", "", "free parameter", |(own, _)| own.name.as_str().into()),
+    Column::new("from", "that of the parameter", "lower end of its range; of a normal distribution, 0.1 % are below", |(own, _)| own.range[0].into()),
+    Column::new("to", "that of the parameter", "upper end", |(own, _)| own.range[1].into()),
+    Column::new("region_from", "that of the parameter", "smallest value that is not ruled out; empty if all are", |(own, _)| own.region.map(|[low, _]| value::significant_number(low, 4)).into()),
+    Column::new("region_to", "that of the parameter", "largest value that is not ruled out", |(own, _)| own.region.map(|[_, high]| value::significant_number(high, 4)).into()),
+    Column::new("left", "", "share of its distribution between these two", |(own, _)| value::significant_number(own.left, 3)),
+    Column::new("best", "that of the parameter", "its value in the run that fits best", |(_, best)| (*best).into()),
+];
+
+#[rustfmt::skip]
+const DATA: [Column<Datum>; 6] = [
+    Column::new("of", "", "measured quantity", |own| own.of.into()),
+    Column::new("measured", "that of the quantity", "measured value", |own| own.measured.clone()),
+    Column::new("error", "that of the quantity", "its standard deviation, without the discrepancy", |own| own.error.into()),
+    Column::new("best", "that of the quantity", "value of the run that fits best", |own| own.best.map(|x| value::significant_number(x, 5)).into()),
+    Column::new("region_from", "that of the quantity", "smallest value that emulators expect where nothing is ruled out", |own| own.band.map(|[low, _]| value::significant_number(low, 5)).into()),
+    Column::new("region_to", "that of the quantity", "largest value", |own| own.band.map(|[_, high]| value::significant_number(high, 5)).into()),
+];
+
+/// The columns, for the page of columns.
+pub(super) fn described() -> [FileColumns; 2] {
+    [
+        FileColumns::new(&["calibration.csv"], "A line is a free parameter of a calibration.", &FREE),
+        FileColumns::new(
+            &["calibration_data.csv"],
+            "A line is a measured value, with its parameters.",
+            &DATA,
+        ),
+    ]
+}
+
+impl Calibration {
+    /// The tables.
+    pub(super) fn tables(&self) -> Vec<FindingsTable> {
+        let best = |at: usize| self.best.as_ref().map(|best| best.values[at]);
+        let free: Vec<_> = self.free.iter().cloned().enumerate().map(|(at, own)| (own, best(at))).collect();
+        let names: Vec<&str> = self
+            .data
+            .first()
+            .map_or_else(Vec::new, |own| own.place.iter().map(|(name, _)| &**name).collect());
+        let place = |name: &str| {
+            let own = name.to_owned();
+            let of = move |datum: &Datum| datum.place.iter().find(|(name, _)| *name == own).cloned();
+            Column::made(parameters::head(name), move |datum| of(datum).map(|(_, value)| value).into())
+        };
+        let columns: Vec<Column<Datum>> = names.into_iter().map(place).chain(DATA).collect();
+        vec![
+            FindingsTable {
+                heading: "Free parameters",
+                meaning: "What the measured values leave of the ranges of the free parameters, and the run that fits best.",
+                table: Table::of("calibration", &FREE, &free),
+            },
+            FindingsTable {
+                heading: "Measured values",
+                meaning: "Each measured value, that of the best run, and the range that the emulators expect inside the region.",
+                table: Table::of("calibration_data", &columns, &self.data),
+            },
+        ]
+    }
+
+    fn point(&self, values: &[f64]) -> String {
+        let one = |(free, value): (&Free, &f64)| assignment(&free.name, &rounded(*value));
+        self.free.iter().zip(values).map(one).collect::<Vec<_>>().join(", ")
+    }
+
+    /// What was found, in sentences.
+    pub fn in_words(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        let all = format!("{} ({})", count(self.points as u64, "point"), count(self.jobs as u64, "job"));
+        if let Some(nearest) = &self.nearest {
+            let datum = &self.data[nearest.worst];
+            let place: Vec<String> =
+                datum.place.iter().map(|(name, value)| assignment(name, value)).collect();
+            let at = if place.is_empty() { String::new() } else { format!(" at {}", place.join(", ")) };
+            words.push(format!(
+                "No point of these ranges explains the data, after {all}. The nearest one, {}, is {} standard deviations away from {}{at}.",
+                self.point(&nearest.values),
+                value::significant(nearest.implausibility, 2),
+                datum.of
+            ));
+        } else if self.points > 0 {
+            let share = value::significant(100.0 * self.share, 2);
+            words
+                .push(format!("The data leave {share} % of the ranges of the free parameters, after {all}."));
+        }
+        for free in &self.free {
+            let Some([low, high]) = free.region else { continue };
+            words.push(if free.left >= NOTHING_SAID {
+                format!(
+                    "They say nearly nothing about {}: {} % of its range are left.",
+                    free.name,
+                    value::fixed(100.0 * free.left, 0)
+                )
+            } else {
+                let [low, high] = [low, high].map(|x| in_words(&free.name, &rounded(x)));
+                format!("{} lies between {low} and {high}.", free.name)
+            });
+        }
+        for ([a, b], correlation) in &self.correlations {
+            if correlation.abs() >= NOT_TOLD_APART {
+                let [a, b] = [a, b].map(|at| &self.free[*at].name);
+                let way = if *correlation > 0.0 { "a larger" } else { "a smaller" };
+                words.push(format!(
+                    "They do not tell {a} and {b} apart: a larger {a} with {way} {b} explains them as well (correlation {}).",
+                    value::fixed(*correlation, 2)
+                ));
+            }
+        }
+        words.extend(self.best.as_ref().map(|best| self.best_in_words(best)));
+        for check in self.checks.iter().filter(|check| check.values > 0) {
+            words.push(format!(
+                "Of {} values of {} that were left out of the emulators, {} % lay within two standard deviations of what they expected.",
+                check.values,
+                check.of,
+                value::fixed(100.0 * check.within_two as f64 / check.values as f64, 0)
+            ));
+        }
+        let [unknown, values] = self.unknown_mesh;
+        if unknown > 0 {
+            let counts = if unknown == values {
+                "it counts as nothing, so that places may be ruled out wrongly; `\"run\": { \"start\": \"nested\" }` makes it known"
+            } else {
+                "it counts as the largest one of the neighbours that know it"
+            };
+            words.push(format!(
+                "The error of the mesh is unknown in {unknown} of {values} values of the runs; there {counts}."
+            ));
+        }
+        words
+    }
+
+    fn best_in_words(&self, best: &Fit) -> String {
+        let point = self.point(&best.values);
+        if best.largest.is_infinite() {
+            return format!(
+                "The best run, {point}, squeals where steady sliding was measured, or the other way round."
+            );
+        }
+        format!(
+            "The best run, {point}, is within {} standard deviations of all {} values that it can be compared with (root mean square {}).",
+            value::significant(best.largest, 2),
+            best.compared,
+            value::significant(best.root_mean_square, 2)
+        )
+    }
+
+    /// The answer for programs.
+    pub fn as_json(&self) -> Value {
+        let named = |of: &dyn Fn(usize, &Free) -> Value| -> Map<String, Value> {
+            self.free.iter().enumerate().map(|(at, free)| (free.name.clone(), of(at, free))).collect()
+        };
+        let best = self.best.as_ref().map(|best| named(&|at, _| best.values[at].into()));
+        let has_region = self.free.iter().any(|free| free.region.is_some());
+        let region = has_region.then(|| named(&|_, free| json!(free.region)));
+        json!({
+            "best": best,
+            "region": region,
+            "ruled_out": 1.0 - self.share,
+            "points": self.points,
+            "jobs": self.jobs,
+        })
+    }
+
+    /// The region over each pair of parameters, with the points that were run; none with one parameter.
+    pub(super) fn chart(&self) -> Option<Chart> {
+        let inside = Marker::new(Shape::Circle, BLUE).sized(2.0);
+        let run = Marker::new(Shape::Circle, GREY).sized(3.5).hollow(true);
+        let best = Marker::new(Shape::Star, VERMILLION).sized(7.0);
+        let scale = |free: &Free| {
+            let values: Vec<Value> = free.range.iter().map(|x| Value::from(*x)).collect();
+            Scale::new(&parameters::head(&free.name).name, Axis::for_values(&values, Some(free.is_log)))
+        };
+        let mut panels = Vec::new();
+        for (second, y) in self.free.iter().enumerate() {
+            for (first, x) in self.free.iter().enumerate().take(second) {
+                let points = |of: &mut dyn Iterator<Item = &Vec<f64>>, marker| {
+                    let at = |values: &Vec<f64>| (values[first], values[second]);
+                    Layer::Points(
+                        of.map(|values| Point { at: at(values), error: 0.0, marker, tip: None }).collect(),
+                    )
+                };
+                let mut panel = Panel::new("", scale(x), scale(y));
+                panel.layers.push(points(&mut self.run.iter(), run));
+                panel.layers.push(points(&mut self.inside.iter(), inside));
+                panel.layers.push(points(&mut self.best.iter().map(|best| &best.values), best));
+                panels.push(panel);
+            }
+        }
+        let legend = vec![
+            Entry::marker(inside, "not ruled out"),
+            Entry::marker(run, "runs"),
+            Entry::marker(best, "best run"),
+        ];
+        (!panels.is_empty()).then(|| Chart { panels, legend, ..Chart::default() })
+    }
+}
+
+/// The file of [`Calibration::chart`].
+pub(super) const PAIRS: &str = "calibration.svg";
+
+/// What it shows.
+pub(super) const TITLE: &str = "pairs of the free parameters that are not ruled out";
+
+/// A value of a parameter for a reader.
+fn rounded(x: f64) -> Value {
+    value::significant_number(x, 4)
+}
