@@ -7,9 +7,12 @@ use super::report::{self, OutFolder};
 use super::study_args::StudyArgs;
 use super::submit::{Priority, submit};
 use super::work::{Checkpoints, Retries, Threads, options, work_on};
+use crate::publish::value::significant;
 use crate::queue::{Clock, Location, Queue, Shard};
+use crate::report::Calibration as Found;
 use crate::study::{Calibration, Discrepancy};
-use crate::sweep::{self, CalibrationData, ReportRequest};
+use crate::sweep::{self, CalibrationData, Plan, ReportRequest};
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Arguments of `calibrate`.
@@ -31,6 +34,9 @@ pub(crate) struct Args {
     /// Largest number of points of the free parameters; a point has a job for each measured point. Default: 30 for each parameter.
     #[arg(long, value_name = "N")]
     most_points: Option<usize>,
+    /// Say also how implausible this point is, such as mu=0.4,young_modulus_pa=2e9: a value for each free parameter.
+    #[arg(long, value_delimiter = ',', value_name = "NAME=VALUE", value_parser = named_number)]
+    at: Vec<(String, f64)>,
     /// Print the answer as JSON.
     #[arg(long)]
     json: bool,
@@ -44,6 +50,27 @@ pub(crate) struct Args {
     replacement: Replacement,
     #[command(flatten)]
     out: OutFolder,
+}
+
+fn named_number(text: &str) -> Result<(String, f64), String> {
+    let parts =
+        text.split_once('=').and_then(|(name, value)| Some((name.trim(), value.trim().parse().ok()?)));
+    match parts {
+        Some((name, value)) if f64::is_finite(value) => Ok((name.to_owned(), value)),
+        _ => Err("expected NAME=VALUE with a number in the unit of the name".to_owned()),
+    }
+}
+
+/// The values of a point in the order of the free parameters; none if no point is given.
+fn values(at: &[(String, f64)], plan: &Plan) -> Result<Vec<f64>, CliError> {
+    let free: Vec<&str> = plan.study().free_parameters().iter().map(|own| own.parameter.name).collect();
+    let value = |name: &&str| at.iter().find(|(own, _)| own == name).map(|(_, value)| *value);
+    let found: Option<Vec<f64>> = free.iter().map(value).collect();
+    match found {
+        _ if at.is_empty() => Ok(Vec::new()),
+        Some(found) if at.len() == free.len() => Ok(found),
+        _ => Err(CliError::Usage(format!("--at: expected one value for each of {}", free.join(", ")))),
+    }
 }
 
 /// What a discrepancy is of.
@@ -85,6 +112,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         Calibration { free: args.free.clone(), data: points, discrepancy, most_points: args.most_points };
     let plan = args.study.plan_of_calibration(calibration, settings)?;
     let name = plan.name();
+    let values = values(&args.at, &plan)?;
     report::create_folder(name, &args.out)?;
     sweep::block_on(async {
         let queue = Queue::open_with(db.clone(), Clock::OfDatabase, args.retries.settings()).await?;
@@ -93,12 +121,12 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             let code = work_on(&plan, options(&args.threads, Some(&args.checkpoints)), queue).await?;
             let content = sweep::read_report(queue, &ReportRequest::of_study(name)).await?;
             let found = sweep::read_growth(queue, name, &content.rows).await?;
+            let at = match values.as_slice() {
+                [] => None,
+                values => sweep::read_implausibility(queue, name, &content.rows, values).await?,
+            };
             if let Some(found) = found.as_ref().and_then(|own| own.calibration.as_ref()) {
-                print(&if args.json {
-                    format!("{}\n", found.as_json())
-                } else {
-                    found.in_words().into_iter().map(|sentence| sentence + "\n").collect()
-                })?;
+                print(&if args.json { as_json(found, at) } else { as_text(found, at) })?;
             }
             report::write(queue, &content, &args.out.of(name), None).await?;
             queue.ensure_place().await?;
@@ -106,4 +134,25 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         })
         .await
     })
+}
+
+/// What was found. `at` is the implausibility of the point that was asked for, with the cutoff.
+fn as_json(found: &Found, at: Option<[f64; 2]>) -> String {
+    let mut answer = found.as_json();
+    if let Some([implausibility, cutoff]) = at {
+        answer["at"] = json!({ "implausibility": implausibility, "ruled_out": implausibility > cutoff });
+    }
+    format!("{answer}\n")
+}
+
+fn as_text(found: &Found, at: Option<[f64; 2]>) -> String {
+    let of_point = at.map(|[implausibility, cutoff]| {
+        let is_out = if implausibility > cutoff { "ruled out" } else { "not ruled out" };
+        format!(
+            "The point of --at is {is_out}: its implausibility is {}, and the cutoff is {}.",
+            significant(implausibility, 2),
+            significant(cutoff, 2)
+        )
+    });
+    found.in_words().into_iter().chain(of_point).map(|sentence| sentence + "\n").collect()
 }

@@ -64,6 +64,7 @@ fn findings(rows: &[JobRow]) -> Findings {
         minima: ["mu", "clamp_width_m"].map(minimum).into(),
         branches: vec![BranchPoint { parameters: parameters.clone(), up: None, down: None }],
         basins: vec![Basin { parameters, end: None, jobs: 1, of: 2 }],
+        calibration: None,
     }
 }
 

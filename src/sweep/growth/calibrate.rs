@@ -76,6 +76,19 @@ pub(super) fn found(study: &Study, settings: &Calibrate, rows: &[JobRow]) -> Cal
     Known::of(study, settings, rows).found(rows)
 }
 
+/// The implausibility of a point, with the values of the free parameters in their order, and the one above which it is ruled out.
+pub(super) fn implausibility(
+    study: &Study,
+    settings: &Calibrate,
+    rows: &[JobRow],
+    values: &[f64],
+) -> [f64; 2] {
+    let known = Known::of(study, settings, rows);
+    let place: Vec<f64> = known.free.iter().zip(values).map(|(own, value)| own.share(*value)).collect();
+    let all = known.history.at(&place).into_iter().map(|own| own.implausibility);
+    [all.fold(0.0, f64::max), known.history.cutoff()]
+}
+
 /// The rows of each point of the free parameters, by their values.
 fn points<'a>(rows: &'a [JobRow], free: &[FreeParameter]) -> IndexMap<Vec<u64>, Vec<&'a JobRow>> {
     let mut found: IndexMap<Vec<u64>, Vec<&JobRow>> = IndexMap::new();

@@ -37,6 +37,22 @@ pub async fn read_growth(
     Ok(Some(found))
 }
 
+/// The implausibility of a point in a study that is calibrated, and the one above which it is ruled out. `values` are those of the free
+/// parameters, in the order of the study. Returns `None` if the study is not calibrated.
+///
+/// # Errors
+/// As [`read_growth`].
+pub async fn read_implausibility(
+    queue: &mut Queue,
+    study: &str,
+    rows: &[JobRow],
+    values: &[f64],
+) -> Result<Option<[f64; 2]>, SweepError> {
+    let Some(study) = readable_study(queue, study).await? else { return Ok(None) };
+    let settings = study.growth().calibrate.as_ref();
+    Ok(settings.map(|own| calibrate::implausibility(&study, own, rows, values)))
+}
+
 fn waves(rows: &[JobRow]) -> Vec<BTreeMap<String, u64>> {
     let mut waves: Vec<BTreeMap<String, u64>> = Vec::new();
     for row in rows.iter().filter(|row| row.wave > 0) {

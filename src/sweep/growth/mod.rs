@@ -16,6 +16,6 @@ mod planner;
 mod refine;
 mod series;
 
-pub use findings::read_growth;
+pub use findings::{read_growth, read_implausibility};
 pub use planner::PLANNER;
 pub(super) use series::{Series, along, name, position, rest, series_along};
