@@ -46,7 +46,8 @@
 //! cli ──► sweep ──► worker ──► queue
 //!  │        │          └─────► analysis ──► stability ──► solver ──► spec
 //!  │        ├─────► report ──► publish, analysis::record
-//!  │        └─────► study ───► spec
+//!  │        ├─────► study ───► spec
+//!  │        └─────► calibration
 //!  └──────────────► inspect ─► publish, analysis, solver
 //! ```
 //!
@@ -60,6 +61,7 @@
 //! * [`publish`] – the parts of documents: values as text, drawings, pages, files that are replaced as a whole.
 //! * [`inspect`] – one job run again and shown in detail: histories, cycles, snapshots, fields.
 //! * [`report`] – page, tables, figures and CSV from records.
+//! * [`calibration`] – history matching in plain numbers: what measured values leave of the ranges of parameters.
 //! * [`sweep`] – the steps of a sweep from the study to the report, for the command line and for other programs.
 //! * [`cli`] – the command line: arguments, messages and exit codes.
 //!
@@ -70,7 +72,7 @@
 //! * `queue` – [`queue`] and [`worker`].
 //! * `postgres` – the queue on a PostgreSQL server too.
 //! * `report` – [`publish`], [`report`] and [`inspect`].
-//! * `sweep` – [`sweep`], with `queue` and `report`.
+//! * `sweep` – [`sweep`] and [`calibration`], with `queue` and `report`.
 //! * `cli` – [`cli`] and the command, with `sweep`.
 
 #[cfg(feature = "sweep")]

@@ -1,6 +1,7 @@
 //! The region that is not ruled out, and the places where the next runs say most.
 
-use super::{Assessment, History};
+use super::history::History;
+use super::values::Assessment;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// A place that is not ruled out.

@@ -5,7 +5,7 @@
 //! fewer runs for the same curve.
 
 use super::emulator::{Emulator, Group, Kernels, LeaveOneOut, Near, Scales, best_scales, is_enough};
-use super::{Assessment, Expected, LOG_FREQUENCY, Outcome, QUANTITIES, Run, Target};
+use super::values::{Assessment, Expected, LOG_FREQUENCY, Outcome, QUANTITIES, Run, Target};
 use nalgebra::{DMatrix, DVector};
 
 /// The length over which it is known whether runs squeal, in units of the ranges.

@@ -116,14 +116,6 @@ fn a_jump_of_the_frequency_is_another_branch() {
     assert!(history.at(&truth).iter().all(|own| own.implausibility < 1.0));
 }
 
-/// Protects: the cutoff is Pukelsheim's for few values, and grows so that the truth is lost in 5 % of cases at most: for 1000 values the
-/// normal quantile of 1 − 0.05/2000, 4.056 (bisection of erfc in another program).
-#[test]
-fn more_values_have_a_larger_cutoff() {
-    assert!((cutoff(1) - 3.0).abs() < 1.0e-9 && (cutoff(18) - 3.0).abs() < 1.0e-2);
-    assert!((cutoff(1000) - 4.056).abs() < 1.0e-3, "{}", cutoff(1000));
-}
-
 /// Protects: a history without runs has no region.
 #[test]
 fn no_runs_have_no_region() {

@@ -110,7 +110,16 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     });
     let calibration =
         Calibration { free: args.free.clone(), data: points, discrepancy, most_points: args.most_points };
+    let names: Vec<String> = settings.iter().map(|(name, _)| name.clone()).collect();
     let plan = args.study.plan_of_calibration(calibration, settings)?;
+    if let Some(free) =
+        plan.study().free_parameters().iter().find(|own| names.iter().any(|name| own.parameter.name == name))
+    {
+        let name = free.parameter.name;
+        return Err(CliError::Usage(format!(
+            "{name} is free, and the measured points have a value of it; expected the file without this column, or --free without {name}"
+        )));
+    }
     let name = plan.name();
     let values = values(&args.at, &plan)?;
     report::create_folder(name, &args.out)?;

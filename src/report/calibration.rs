@@ -1,6 +1,6 @@
 //! What measured points say about free parameters: the region that they do not rule out.
 
-use super::growth::FindingsTable;
+use super::findings_table::FindingsTable;
 use super::parameters::{self, assignment, in_words};
 use crate::publish::chart::palette::{BLUE, GREY, VERMILLION};
 use crate::publish::chart::{Axis, Chart, Entry, Layer, Marker, Panel, Point, Scale, Shape};
@@ -37,7 +37,7 @@ pub struct Calibration {
     pub checks: Vec<Check>,
     /// The errors of the emulators over all others, as the root mean square over the region for the worst value.
     pub emulators: f64,
-    /// Values of runs whose error of the mesh is not known, and all of them.
+    /// Values of runs that squeal whose error of the mesh is not known, and all of them.
     pub unknown_mesh: [usize; 2],
 }
 
@@ -244,7 +244,7 @@ impl Calibration {
                 "it counts as the largest one of the neighbours that know it"
             };
             words.push(format!(
-                "The error of the mesh is unknown in {unknown} of {values} values of the runs; there {counts}."
+                "The error of the mesh is unknown in {unknown} of {values} values of runs that squeal; there {counts}."
             ));
         }
         words

@@ -1,6 +1,7 @@
 //! What a study that grows has found: boundaries, minima, branches and basins.
 
 use super::calibration::Calibration;
+use super::findings_table::FindingsTable;
 use super::parameters;
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::publish::table::{Column, FileColumns, Table};
@@ -198,13 +199,6 @@ pub struct Findings {
     pub basins: Vec<Basin>,
     /// What measured points say about free parameters.
     pub calibration: Option<Calibration>,
-}
-
-/// A table of findings.
-pub(super) struct FindingsTable {
-    pub heading: &'static str,
-    pub meaning: &'static str,
-    pub table: Table,
 }
 
 /// Columns of the parameters of points: those that any of the points has.

@@ -25,6 +25,7 @@ mod explore;
 pub mod export;
 pub mod figure;
 mod files;
+mod findings_table;
 mod glyph;
 mod growth;
 mod input;

@@ -1,20 +1,12 @@
 //! Studies that are calibrated: what a study file says about measured points and the parameters that they are to tell.
 
-use super::definition::Study;
-use super::error::{Problem, StudyError};
-use super::file::StudyFile;
-use super::grid::Grid;
-use super::growth::{FIELDS, Growth};
+use super::error::Problem;
 use super::json::present;
-use super::outline::Outline;
-use super::parameter::{Kind, Parameter, unknown_help};
-use super::samples::distribution::Distribution;
-use super::samples::given::SamplesFile;
-use super::source::{Change, SourceText};
-use super::suggest::nearest_name;
+use super::parameter::{Kind, Parameter};
+use super::source::SourceText;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 /// Measured points, which rule out values of the parameters that `samples` draws. The program adds points of these parameters, wave by wave,
 /// until their region is known. The jobs of a point are those at all measured points.
@@ -74,9 +66,9 @@ pub struct Discrepancy {
 }
 
 /// How the parameters of a calibration are given.
-const EXAMPLE: &str = "for example \"samples\": { \"design\": \"sobol\", \"count\": 20, \"of\": { \"mu\": { \"uniform\": [0.2, 0.6] } } }";
+pub(super) const EXAMPLE: &str = "for example \"samples\": { \"design\": \"sobol\", \"count\": 20, \"of\": { \"mu\": { \"uniform\": [0.2, 0.6] } } }";
 
-fn wave_points() -> usize {
+pub(super) fn wave_points() -> usize {
     8
 }
 
@@ -103,16 +95,14 @@ impl Calibrate {
         self.most_points.unwrap_or(MOST_POINTS * free)
     }
 
-    /// What is wrong with it in a study with these points.
-    pub(super) fn problems(&self, grid: &Grid, source: &SourceText) -> Vec<Problem> {
+    /// What is wrong with it in a study that draws `first` points of the parameters `free`, and varies those of `along` besides.
+    pub(super) fn problems(
+        &self,
+        (free, first): (&[&'static Parameter], usize),
+        along: &[(&'static Parameter, &[Value])],
+        source: &SourceText,
+    ) -> Vec<Problem> {
         let mut found = Vec::new();
-        let Some(samples) = grid.samples.as_ref().filter(|own| !own.distributions.is_empty()) else {
-            let message = "expected `samples` with a `design` and distributions of the free parameters";
-            return vec![source.problem("calibrate", message).with_help(EXAMPLE)];
-        };
-        let (free, first) = (&samples.parameters, samples.rows.len());
-        let along: Vec<(&'static Parameter, &[Value])> =
-            grid.axes.iter().map(|axis| (axis.parameter, axis.values.as_slice())).collect();
         for parameter in free.iter().filter(|own| !matches!(own.kind, Kind::Number)) {
             let message =
                 format!("{}: expected free parameters that are numbers with decimals", parameter.name);
@@ -142,7 +132,7 @@ impl Calibrate {
         }
         for (number, point) in self.data.iter().enumerate() {
             let field = format!("calibrate.data[{number}]");
-            found.extend(point.problems(&field, &along, source));
+            found.extend(point.problems(&field, along, source));
             let is_twice = self.data[..number].iter().any(|other| other.at == point.at);
             if is_twice {
                 let message = "an earlier point has the same parameters; expected their mean";
@@ -212,46 +202,6 @@ impl MeasuredPoint {
     }
 }
 
-/// A parameter that measured points are to tell.
-#[derive(Debug, Clone)]
-pub struct FreeParameter {
-    /// The parameter.
-    pub parameter: &'static Parameter,
-    distribution: Distribution,
-}
-
-impl FreeParameter {
-    /// The value below which a share of its distribution lies.
-    pub fn value(&self, share: f64) -> Value {
-        self.distribution.value(share, &self.parameter.kind)
-    }
-
-    /// Whether its distribution has two ends.
-    pub fn has_ends(&self) -> bool {
-        self.distribution.is_bounded()
-    }
-
-    /// The share of its distribution below a value.
-    pub fn share(&self, value: f64) -> f64 {
-        self.distribution.share(value)
-    }
-}
-
-impl Study {
-    /// The parameters that `samples` draws, with their distributions, in the order of the file; none without a design.
-    pub fn free_parameters(&self) -> Vec<FreeParameter> {
-        let Some(samples) = &self.grid.samples else { return Vec::new() };
-        let all = samples.parameters.iter().zip(&samples.distributions);
-        all.map(|(parameter, distribution)| FreeParameter { parameter, distribution: distribution.clone() })
-            .collect()
-    }
-}
-
-/// So many points of Sobol's sequence in a unit cube. Another seed gives other points.
-pub fn sobol_points(count: usize, parameters: usize, seed: u64) -> Vec<Vec<f64>> {
-    super::samples::sobol_points(count, parameters, seed)
-}
-
 /// A calibration that a command asks for.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Calibration {
@@ -263,65 +213,4 @@ pub struct Calibration {
     pub discrepancy: Option<Discrepancy>,
     /// Instead of that of the study.
     pub most_points: Option<usize>,
-}
-
-impl Outline {
-    /// Makes it the study of the free parameters: Sobol points of them at all measured points, and further ones where the data say so.
-    pub(super) fn ask_for_calibration(
-        &mut self,
-        asked: &Calibration,
-        own: Option<&Calibrate>,
-        has_name: bool,
-    ) -> Result<Growth, StudyError> {
-        let refuse = |problem: Problem| Err(StudyError::Invalid(vec![problem]));
-        let given = self.name().map_err(StudyError::Invalid)?;
-        let name = if has_name { given } else { format!("{given}-calibration") };
-        let of = self.document.pointer("/samples/of").and_then(Value::as_object).cloned();
-        let Some(of) = of.filter(|of| !of.is_empty()) else {
-            let message = "expected distributions of the free parameters";
-            return refuse(self.source.problem("samples.of", message).with_help(EXAMPLE));
-        };
-        for name in &asked.free {
-            if !of.contains_key(name) {
-                let message = "expected a parameter with a distribution in samples.of";
-                let near = nearest_name(name, of.keys().map(String::as_str));
-                let mut help = match near {
-                    Some(near) => vec![format!("did you mean `{near}`?")],
-                    None if Parameter::find(name).is_none() => unknown_help(name),
-                    None => Vec::new(),
-                };
-                help.push(format!("samples.of has {}", of.keys().cloned().collect::<Vec<_>>().join(", ")));
-                return refuse(Problem { help, ..Problem::of_change("--free", "free", name, message) });
-            }
-        }
-        let is_free = |name: &String| asked.free.is_empty() || asked.free.contains(name);
-        let of: Map<String, Value> = of.into_iter().filter(|(name, _)| is_free(name)).collect();
-        let Some(data) = asked.data.clone().or_else(|| own.map(|own| own.data.clone())) else {
-            let message = "expected measured points";
-            let help = "give a CSV file with --data";
-            return refuse(self.source.problem("calibrate", message).with_help(help));
-        };
-        let calibrate = Calibrate {
-            data,
-            discrepancy: asked.discrepancy.or_else(|| own.map(|own| own.discrepancy)).unwrap_or_default(),
-            most_points: asked.most_points.or_else(|| own.and_then(|own| own.most_points)),
-            wave_points: own.map_or_else(wave_points, |own| own.wave_points),
-        };
-        let first = (FIRST_POINTS * of.len()).min(calibrate.most_points(of.len()).max(1));
-        let seed = self.document.pointer("/samples/seed").cloned().unwrap_or_else(|| 0.into());
-        let samples = json!({ "design": "sobol", "count": first, "seed": seed, "of": of });
-        let free = of.keys().cloned().collect::<Vec<_>>().join(", ");
-        self.source.changes.extend([Change::of_name("", &name), Change::of_growth("", &free)]);
-        let read: SamplesFile =
-            serde_json::from_value(samples.clone()).expect("the fields are those of samples");
-        let read = read.read(&StudyFile::template(), &self.source).map_err(StudyError::Invalid)?;
-        self.grid.samples = Some(read);
-        if let Value::Object(fields) = &mut self.document {
-            fields.retain(|name, _| !FIELDS.contains(&name.as_str()));
-            fields.insert("name".to_owned(), name.into());
-            fields.insert("samples".to_owned(), samples);
-            fields.insert("calibrate".to_owned(), json!(calibrate));
-        }
-        Ok(Growth { calibrate: Some(calibrate), ..Growth::default() })
-    }
 }

@@ -4,7 +4,7 @@ use super::calibrate::Calibrate;
 use super::error::Problem;
 use super::limits::MAX_JOBS;
 use super::parameter::{Kind, PARAMETERS, Parameter};
-use super::source::SourceText;
+use super::source::{GROWTH, SourceText};
 use super::suggest::nearest_name;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
@@ -164,9 +164,6 @@ pub struct Growth {
     pub calibrate: Option<Calibrate>,
 }
 
-/// The fields of a study file that let it grow. A study has at most one of them.
-pub(super) const FIELDS: [&str; 3] = ["refine", "continue", "calibrate"];
-
 fn mu_star() -> String {
     "mu_star".to_owned()
 }
@@ -208,7 +205,7 @@ impl Growth {
             found.push(source.problem("continue.kicks", message));
         }
         let given = [self.refine.is_some(), self.continues.is_some(), self.calibrate.is_some()];
-        let mut given = FIELDS.into_iter().zip(given).filter(|(_, is_given)| *is_given);
+        let mut given = GROWTH.into_iter().zip(given).filter(|(_, is_given)| *is_given);
         if let (Some((first, _)), Some((second, _))) = (given.next(), given.next()) {
             found.push(source.problem(second, format!("expected only one of `{first}` and `{second}`")));
         }

@@ -16,6 +16,7 @@
 
 mod axis;
 mod calibrate;
+mod calibration;
 mod chains;
 mod change;
 mod conditions;
@@ -60,7 +61,8 @@ mod time_defaults;
 mod validate;
 mod with_unit;
 
-pub use calibrate::{Calibrate, Calibration, Discrepancy, FreeParameter, MeasuredPoint, sobol_points};
+pub use calibrate::{Calibrate, Calibration, Discrepancy, MeasuredPoint};
+pub use calibration::{FreeParameter, sobol_points};
 pub use chains::chains_of;
 pub use change::{Basins, Changes};
 pub use definition::Study;

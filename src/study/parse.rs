@@ -1,13 +1,14 @@
 //! From the text of a study file to a checked study.
 
 use super::axis::Axis;
+use super::calibration;
 use super::change::{Basins, Changes, Forms};
 use super::conditions::Conditions;
 use super::definition::Study;
 use super::error::{Problem, StudyError};
 use super::file::StudyFile;
 use super::grid::Grid;
-use super::growth::{Continue, FIELDS, Growth};
+use super::growth::{Continue, Growth};
 use super::height_file;
 use super::json::{Decoded, decode_all};
 use super::limits::MAX_JOBS;
@@ -20,7 +21,7 @@ use super::plausibility::refused_strain;
 use super::range;
 use super::report_axes::ReportAxes;
 use super::samples::{self, given::SamplesFile};
-use super::source::{Change, SourceText, shorten};
+use super::source::{Change, GROWTH, SourceText, shorten};
 use super::text::{STDIN, StudyText};
 use super::validate::check_jobs;
 use super::with_unit;
@@ -165,7 +166,9 @@ impl Study {
             return Err(StudyError::Invalid(vec![source.problem(field, message)]));
         }
         refuse(growth.problems(&grid.parameters().collect::<Vec<_>>(), grid.size(), &source))?;
-        refuse(growth.calibrate.as_ref().map_or_else(Vec::new, |own| own.problems(&grid, &source)))?;
+        refuse(
+            growth.calibrate.as_ref().map_or_else(Vec::new, |own| calibration::problems(own, &grid, &source)),
+        )?;
         let (specs, mut violations): (Vec<_>, Vec<_>) =
             grid.resolve(&draft).into_iter().map(|job| (job.spec, job.violations)).unzip();
         if !allows_modes {
@@ -233,7 +236,7 @@ impl Outline {
         self.grid.axes.retain(|axis| axis.parameter.name != STABILITY);
         if let Value::Object(fields) = &mut self.document {
             // The command looks for boundaries of its own.
-            fields.retain(|name, _| !FIELDS.contains(&name.as_str()));
+            fields.retain(|name, _| !GROWTH.contains(&name.as_str()));
             fields.insert("name".to_owned(), name.into());
             fields.insert(STABILITY.to_owned(), StabilityMethod::Modes.name().into());
         }
@@ -254,7 +257,7 @@ impl Outline {
             .extend([Change::of_name("--basins", &name), Change::of_growth("--basins", &text)]);
         if let Value::Object(fields) = &mut self.document {
             fields.insert("name".to_owned(), name.into());
-            fields.retain(|name, _| !FIELDS.contains(&name.as_str()));
+            fields.retain(|name, _| !GROWTH.contains(&name.as_str()));
             fields.insert("continue".to_owned(), json!({ "kicks": kicks, "kick_m_s": kick_m_s }));
         }
         let continues = Continue { kicks: Some(kicks), kick_m_s: Some(kick_m_s), ..Continue::default() };

@@ -1,7 +1,6 @@
 //! The text of a study file: turns field paths into positions and values for messages.
 
 use super::error::{Problem, StudyError};
-use super::growth::FIELDS;
 use super::json::{NUMBER, TypeMismatch, number_hint};
 use super::locate::{self, FieldSpan, FieldSpans, NotJson, Position, RepeatedKey, join};
 use super::parameter::Parameter;
@@ -22,6 +21,9 @@ pub(super) struct SourceText {
     /// What the command line has changed of it.
     pub changes: Vec<Change>,
 }
+
+/// The fields of a study file that let it grow. A study has at most one of them.
+pub(super) const GROWTH: [&str; 3] = ["refine", "continue", "calibrate"];
 
 /// One value that the command line sets.
 #[derive(Debug, Clone)]
@@ -50,7 +52,7 @@ impl Change {
 
     /// What the study says about further jobs.
     pub(super) fn of_growth(place: &str, text: &str) -> Self {
-        let fields = FIELDS.map(str::to_owned).to_vec();
+        let fields = GROWTH.map(str::to_owned).to_vec();
         Self { place: place.to_owned(), fields, text: text.to_owned() }
     }
 

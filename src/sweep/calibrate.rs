@@ -87,6 +87,23 @@ pub fn read_calibration_data(path: &Path) -> Result<CalibrationData, SweepError>
             }
         }
     }
+    for (number, own) in points.iter().enumerate() {
+        let place = line(&file, number);
+        if own.frequency_hz.is_some() && own.squeals == Some(false) {
+            return refuse(format!(
+                "line {place}: it has a frequency, and squeals is no; expected one of the two"
+            ));
+        }
+        if let Some(first) = points[..number].iter().position(|other| other.at == own.at) {
+            let point = along.map_or_else(String::new, |name| {
+                format!("{name} = {}, ", own.at.get(name).map_or_else(String::new, text))
+            });
+            return refuse(format!(
+                "line {place}: {point}the same point as on line {}; expected one line for it, with the mean",
+                line(&file, first)
+            ));
+        }
+    }
     Ok(CalibrationData { points, settings, left_out: file.left_out })
 }
 

@@ -49,12 +49,12 @@ fn findings(folder: &Folder, db: &str) -> BTreeMap<String, String> {
     found
 }
 
-fn undisturbed(study: &Value, options: &str) -> BTreeMap<String, String> {
+pub fn undisturbed(study: &Value, options: &str) -> BTreeMap<String, String> {
     timed(study, options).0
 }
 
 /// The findings of an undisturbed run, and how long it took.
-fn timed(study: &Value, options: &str) -> (BTreeMap<String, String>, Duration) {
+pub fn timed(study: &Value, options: &str) -> (BTreeMap<String, String>, Duration) {
     let folder = Folder::with("study", study);
     let start = Instant::now();
     folder.ok(&format!("run study.json --db sweep.db {options}"));
@@ -64,7 +64,7 @@ fn timed(study: &Value, options: &str) -> (BTreeMap<String, String>, Duration) {
 
 /// Starts pairs of workers and kills them after a random time, until the study needs no more jobs. An undisturbed run takes the time
 /// `whole`. A pair lives for a third of it at most, so that several pairs are killed on a machine of any speed.
-fn storm(study: &Value, db: &str, seed: u64, whole: Duration) -> BTreeMap<String, String> {
+pub fn storm(study: &Value, db: &str, seed: u64, whole: Duration) -> BTreeMap<String, String> {
     let folder = Folder::with("study", study);
     let mut random = Random::new(seed);
     folder.ok(&format!("submit study.json --db {db}"));
@@ -90,7 +90,7 @@ fn storm(study: &Value, db: &str, seed: u64, whole: Duration) -> BTreeMap<String
     findings(&folder, db)
 }
 
-fn assert_same(found: &BTreeMap<String, String>, expected: &BTreeMap<String, String>) {
+pub fn assert_same(found: &BTreeMap<String, String>, expected: &BTreeMap<String, String>) {
     assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
     for (file, text) in expected {
         assert!(found[file] == *text, "{file}:\n{}\n---\n{text}", found[file]);

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod book;
+mod calibrate;
 mod commands;
 mod comparison;
 mod corners;

@@ -1,5 +1,6 @@
 //! Studies as data: what is refused and with which message, what a grid expands into, what a key means.
 
+mod calibrate;
 mod changes;
 mod damping;
 mod expansion;

@@ -319,12 +319,14 @@ impl<'a> Known<'a> {
         Nearest { values: self.values(&own.place), implausibility: own.implausibility, worst: worst.0 }
     }
 
-    /// Values of runs whose error of the mesh is not known, of those that are compared with measured ones.
+    /// Values of runs that squeal whose error of the mesh is not known, of those that are compared with measured ones.
     fn unknown_mesh(&self) -> [usize; 2] {
         let mut found = [0; 2];
         for run in self.history.runs() {
             for (outcome, target) in run.outcomes.iter().zip(self.history.targets()) {
-                let Some(outcome) = outcome else { continue };
+                let Some(outcome) = outcome.as_ref().filter(|own| own.squeals == Some(true)) else {
+                    continue;
+                };
                 for (own, _) in outcome.values.iter().zip(&target.values).filter(|(_, own)| own.is_some()) {
                     let Some(own) = own else { continue };
                     found[0] += usize::from(own.mesh_deviation.is_none());
