@@ -31,7 +31,7 @@ TRUE = [30, 36, 24]
 RANGES = {
     "mu": ("uniform", 0.3, 0.6),
     "young_modulus_pa": ("log_uniform", 1.0e9, 4.0e9),
-    "beta_r_s": ("log_uniform", 5.0e-8, 4.0e-7),
+    "beta_r_s": ("log_uniform", 1.0e-7, 4.0e-7),
     "holder_stiffness_y_n_m": ("log_uniform", 2.0e6, 5.0e7),
 }
 # Free parameters of the experiments, in turn: 24 with two, 10 with three, 6 with four.
@@ -327,7 +327,9 @@ def main():
     count = int(arguments[2]) if len(arguments) > 2 else EXPERIMENTS
     folder.mkdir(parents=True, exist_ok=True)
     known = rows()
-    for number in range(min(count, EXPERIMENTS)):
+    # Each set of free parameters in turn, so that an interrupted run has some of all.
+    order = sorted(range(EXPERIMENTS), key=lambda number: FREE[:number].count(FREE[number]))
+    for number in order[:count]:
         if any(int(row["number"]) == number for row in known):
             continue
         row = experiment(program, folder, number)

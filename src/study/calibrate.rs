@@ -1,6 +1,7 @@
 //! Studies that are calibrated: what a study file says about measured points and the parameters that they are to tell.
 
 use super::error::Problem;
+use super::grid_schema::measured_schema;
 use super::json::present;
 use super::parameter::{Kind, Parameter};
 use super::source::SourceText;
@@ -31,7 +32,8 @@ pub struct Calibrate {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MeasuredPoint {
-    /// The values of the parameters that the grid varies: `{ "omega_rpm": 100 }`.
+    /// The values of the parameters that the grid varies.
+    #[schemars(schema_with = "measured_schema")]
     pub at: Map<String, Value>,
     /// Macroscopic friction coefficient.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]

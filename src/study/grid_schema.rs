@@ -29,6 +29,15 @@ pub(super) fn points_schema(schemas: &mut SchemaGenerator) -> Schema {
     })
 }
 
+/// The parameters of a measured point.
+pub(super) fn measured_schema(schemas: &mut SchemaGenerator) -> Schema {
+    let mut point = of_parameters(schemas, value_schema);
+    point.remove("minProperties");
+    let words = "The values of the parameters that the grid varies, such as `{ \"omega_rpm\": 100 }`.";
+    point.insert("description".to_owned(), words.into());
+    point.into()
+}
+
 /// Lists or ranges of equal lengths.
 pub(super) fn zip_schema(schemas: &mut SchemaGenerator) -> Schema {
     let mut zip = of_parameters(schemas, column_schema);

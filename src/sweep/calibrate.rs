@@ -95,9 +95,8 @@ pub fn read_calibration_data(path: &Path) -> Result<CalibrationData, SweepError>
             ));
         }
         if let Some(first) = points[..number].iter().position(|other| other.at == own.at) {
-            let point = along.map_or_else(String::new, |name| {
-                format!("{name} = {}, ", own.at.get(name).map_or_else(String::new, text))
-            });
+            let name = |name: &&str| format!("{name} = {}, ", text(&values(&file, name)[number]));
+            let point: String = file.parameters.iter().map(name).collect();
             return refuse(format!(
                 "line {place}: {point}the same point as on line {}; expected one line for it, with the mean",
                 line(&file, first)

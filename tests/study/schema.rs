@@ -58,6 +58,7 @@ fn a_complete_job_fits() {
         "exclude",
         "refine",
         "continue",
+        "calibrate",
         "report",
     ] {
         assert!(parts.remove(part).is_some(), "{part}");
@@ -166,7 +167,7 @@ fn times_that_depend_on_the_pin_have_no_default() {
         for name in ["limit_s", "decay_observation_s", "ramp_s"] {
             assert_eq!(part.pointer(&format!("/default/{name}")), None, "{at}/{name}");
             if let Some(field) = part.pointer(&format!("/properties/{name}"))
-                && !["grid", "Samples", "samples", "include", "exclude", "scale"]
+                && !["grid", "Samples", "samples", "include", "exclude", "scale", "MeasuredPoint"]
                     .iter()
                     .any(|part| at.contains(part))
             {
