@@ -2,6 +2,7 @@
 
 use super::axis::{Axis, check_type};
 use super::calibrate::Calibration;
+use super::derive::DERIVE;
 use super::error::Problem;
 use super::file::StudyFile;
 use super::outline::Outline;
@@ -113,6 +114,7 @@ impl Outline {
         }
         for setting in &accepted {
             self.source.changes.push(Change::of_parameter(setting.parameter, &setting.place, &setting.text));
+            self.untie(setting.parameter);
             setting.parameter.displaces().for_each(|other| self.forget(other));
         }
         for setting in &accepted {
@@ -121,8 +123,19 @@ impl Outline {
         problems
     }
 
+    /// Removes the tie of a parameter.
+    fn untie(&mut self, parameter: &Parameter) {
+        let Some(study) = self.document.as_object_mut() else { return };
+        let Some(Value::Object(ties)) = study.get_mut(DERIVE) else { return };
+        ties.retain(|name, _| Parameter::find(name).is_none_or(|own| !own.overlaps(parameter)));
+        if ties.is_empty() {
+            study.remove(DERIVE);
+        }
+    }
+
     /// Removes what the study says about a parameter.
     fn forget(&mut self, parameter: &Parameter) {
+        self.untie(parameter);
         self.grid.axes.retain(|axis| !axis.parameter.overlaps(parameter));
         self.grid.samples =
             self.grid.samples.take().and_then(|samples| samples.without(|own| own.overlaps(parameter)));

@@ -6,7 +6,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::Value;
 
 /// The top-level fields in the order in which a document is written; others come before the grid.
-const ORDER: [&str; 11] = [
+const ORDER: [&str; 12] = [
     "$schema",
     "name",
     "description",
@@ -18,6 +18,7 @@ const ORDER: [&str; 11] = [
     "run",
     "detection",
     "stability",
+    "derive",
 ];
 
 /// The text of a study file that says what `document` and `grid` say: the text of `source` if the command line has not

@@ -1,5 +1,7 @@
 //! The draft of a job: values of fields as JSON, and which of them are given.
 
+use super::covered::is_set_by_presets;
+use super::derive::Ties;
 use super::file::StudyFile;
 use super::parameter::{PARAMETERS, Parameter};
 use super::preset::Preset;
@@ -7,6 +9,7 @@ use super::time_defaults;
 use crate::spec::{FieldError, JobSpec};
 use serde::Deserialize;
 use serde_json::{Map, Value};
+use std::borrow::Cow;
 use std::collections::HashSet;
 
 /// The parts of a study that describe a job.
@@ -21,6 +24,8 @@ pub(super) struct Draft {
     values: Value,
     /// Names of the parameters whose fields are given.
     given: HashSet<&'static str>,
+    /// Parameters that are tied to others.
+    ties: Ties,
 }
 
 /// The job of a draft.
@@ -42,7 +47,13 @@ impl Draft {
             .map(|parameter| parameter.name)
             .collect();
         let file = decode(&Value::Object(parts));
-        Self { values: serde_json::to_value(file).expect("a study is plain data with string keys"), given }
+        let values = serde_json::to_value(file).expect("a study is plain data with string keys");
+        let mut draft = Self { values, given, ties: Ties::of(study) };
+        let tied: Vec<_> = draft.ties.parameters().collect();
+        for parameter in tied {
+            draft.mark(parameter);
+        }
+        draft
     }
 
     /// Says that a parameter is given.
@@ -58,11 +69,20 @@ impl Draft {
 
     /// The job: what is given comes before the preset and the damping, and these before the defaults.
     pub(super) fn resolve(&self) -> Resolved {
+        let mut tied = Cow::Borrowed(&self.values);
+        let mut violations = Vec::new();
+        if !self.ties.is_empty() {
+            // What a preset or a default sets later is not known here.
+            let is_known = |own: &Parameter| {
+                self.given.contains(own.name)
+                    || !is_set_by_presets(own) && !time_defaults::FIELDS.contains(&own.name)
+            };
+            violations.extend(self.ties.apply(tied.to_mut(), is_known).err().into_iter().flatten());
+        }
         let StudyFile { preset, damping, scene, numerics, run, detection, stability, accuracy, .. } =
-            decode(&self.values);
+            decode(&tied);
         let mut spec = JobSpec { scene, numerics, run, detection, stability, accuracy, continuation: None };
         let gives = |name: &str| self.given.contains(name);
-        let mut violations = Vec::new();
         if let Some(preset) = preset {
             preset.fill(&mut spec, gives);
         }

@@ -2,7 +2,7 @@
 
 use super::calibrate::Calibrate;
 use super::damping::Damping;
-use super::grid_schema::{conditions_schema, grid_schema};
+use super::grid_schema::{conditions_schema, derive_schema, grid_schema};
 use super::growth::{Continue, Refine};
 use super::json::present;
 use super::preset::Preset;
@@ -53,6 +53,10 @@ pub(super) struct StudyFile {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "Accuracy")]
     pub accuracy: Option<Accuracy>,
+    /// Parameters that are tied to others by an expression: `{ "mu_static": "1.4 * mu" }`.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(schema_with = "derive_schema")]
+    pub derive: Option<Map<String, Value>>,
     /// Parameters to vary; the jobs are all combinations. Absent: a single job.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(schema_with = "grid_schema")]

@@ -48,6 +48,21 @@ pub(super) fn zip_schema(schemas: &mut SchemaGenerator) -> Schema {
     zip.into()
 }
 
+/// Parameters with expressions.
+pub(super) fn derive_schema(schemas: &mut SchemaGenerator) -> Schema {
+    let text = |parameter: &Parameter, _: &mut SchemaGenerator| {
+        let words = format!("Expression for: {}. It has names of other parameters.", parameter.meaning);
+        json!({ "description": words, "type": "string" })
+    };
+    let mut derive = of_parameters(schemas, text);
+    if let Some(Value::Object(fields)) = derive.get_mut("properties") {
+        fields.retain(|name, _| Parameter::find(name).is_some_and(|own| matches!(own.kind, Kind::Number)));
+    }
+    let words = "Parameters that are tied to others by an expression: `{ \"mu_static\": \"1.4 * mu\" }`.";
+    derive.insert("description".to_owned(), words.into());
+    derive.into()
+}
+
 /// Parameters with distributions.
 pub(super) fn distributions_schema(schemas: &mut SchemaGenerator) -> Schema {
     let mut of = of_parameters(schemas, |_, schemas| schemas.subschema_for::<Distribution>().to_value());

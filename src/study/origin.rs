@@ -1,8 +1,8 @@
 //! Where the value of a parameter comes from.
 
+use super::covered::is_set_by_presets;
 use super::definition::Study;
 use super::parameter::Parameter;
-use super::preset::Preset;
 
 /// Where the value of a parameter comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,12 +27,6 @@ impl Origin {
             Self::Default => "default",
         }
     }
-}
-
-/// Whether presets set a parameter, or the whole field of which it sets a part.
-pub fn is_set_by_presets(parameter: &Parameter) -> bool {
-    let mut covered = Preset::COVERS.iter().chain(Preset::CHOOSES).map(|name| Parameter::named(name));
-    covered.any(|own| own.sets(&parameter.field()))
 }
 
 impl Study {

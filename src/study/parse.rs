@@ -5,6 +5,7 @@ use super::calibration;
 use super::change::{Basins, Changes, Forms};
 use super::conditions::Conditions;
 use super::definition::Study;
+use super::derive::Ties;
 use super::error::{Problem, StudyError};
 use super::file::StudyFile;
 use super::grid::Grid;
@@ -121,6 +122,9 @@ impl Study {
             Err(found) => problems.extend(found),
         }
         problems.extend(repeated_parameters(&grid, &source));
+        if let Some(given) = &file.derive {
+            problems.extend(Ties::problems(given, &grid.parameters().collect::<Vec<_>>(), &source));
+        }
         match Conditions::read(file.include.as_deref(), file.exclude.as_deref(), &source) {
             Ok(conditions) => grid.set_conditions(conditions),
             Err(found) => problems.extend(found),

@@ -3,6 +3,7 @@
 mod calibrate;
 mod changes;
 mod damping;
+mod derive;
 mod expansion;
 mod height_map;
 mod keys;

@@ -59,6 +59,7 @@ fn a_complete_job_fits() {
         "refine",
         "continue",
         "calibrate",
+        "derive",
         "report",
     ] {
         assert!(parts.remove(part).is_some(), "{part}");
@@ -167,7 +168,7 @@ fn times_that_depend_on_the_pin_have_no_default() {
         for name in ["limit_s", "decay_observation_s", "ramp_s"] {
             assert_eq!(part.pointer(&format!("/default/{name}")), None, "{at}/{name}");
             if let Some(field) = part.pointer(&format!("/properties/{name}"))
-                && !["grid", "Samples", "samples", "include", "exclude", "scale", "MeasuredPoint"]
+                && !["grid", "Samples", "samples", "include", "exclude", "scale", "MeasuredPoint", "derive"]
                     .iter()
                     .any(|part| at.contains(part))
             {
