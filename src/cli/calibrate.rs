@@ -61,16 +61,14 @@ fn named_number(text: &str) -> Result<(String, f64), String> {
     }
 }
 
-/// The values of a point in the order of the free parameters; none if no point is given.
-fn values(at: &[(String, f64)], plan: &Plan) -> Result<Vec<f64>, CliError> {
+/// Refuses a point that has not one value for each free parameter.
+fn check_point(at: &[(String, f64)], plan: &Plan) -> Result<(), CliError> {
     let free: Vec<&str> = plan.study().free_parameters().iter().map(|own| own.parameter.name).collect();
-    let value = |name: &&str| at.iter().find(|(own, _)| own == name).map(|(_, value)| *value);
-    let found: Option<Vec<f64>> = free.iter().map(value).collect();
-    match found {
-        _ if at.is_empty() => Ok(Vec::new()),
-        Some(found) if at.len() == free.len() => Ok(found),
-        _ => Err(CliError::Usage(format!("--at: expected one value for each of {}", free.join(", ")))),
+    let has_all = free.iter().all(|name| at.iter().any(|(own, _)| own == name));
+    if at.is_empty() || has_all && at.len() == free.len() {
+        return Ok(());
     }
+    Err(CliError::Usage(format!("--at: expected one value for each of {}", free.join(", "))))
 }
 
 /// What a discrepancy is of.
@@ -121,7 +119,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         )));
     }
     let name = plan.name();
-    let values = values(&args.at, &plan)?;
+    check_point(&args.at, &plan)?;
     report::create_folder(name, &args.out)?;
     sweep::block_on(async {
         let queue = Queue::open_with(db.clone(), Clock::OfDatabase, args.retries.settings()).await?;
@@ -130,9 +128,9 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             let code = work_on(&plan, options(&args.threads, Some(&args.checkpoints)), queue).await?;
             let content = sweep::read_report(queue, &ReportRequest::of_study(name)).await?;
             let found = sweep::read_growth(queue, name, &content.rows).await?;
-            let at = match values.as_slice() {
+            let at = match args.at.as_slice() {
                 [] => None,
-                values => sweep::read_implausibility(queue, name, &content.rows, values).await?,
+                point => sweep::read_implausibility(queue, name, &content.rows, point).await?,
             };
             if let Some(found) = found.as_ref().and_then(|own| own.calibration.as_ref()) {
                 print(&if args.json { as_json(found, at) } else { as_text(found, at) })?;

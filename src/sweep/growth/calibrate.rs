@@ -76,17 +76,22 @@ pub(super) fn found(study: &Study, settings: &Calibrate, rows: &[JobRow]) -> Cal
     Known::of(study, settings, rows).found(rows)
 }
 
-/// The implausibility of a point, with the values of the free parameters in their order, and the one above which it is ruled out.
+/// The implausibility of a point, and the one above which it is ruled out; none if a free parameter has no value.
 pub(super) fn implausibility(
     study: &Study,
     settings: &Calibrate,
     rows: &[JobRow],
-    values: &[f64],
-) -> [f64; 2] {
+    point: &[(String, f64)],
+) -> Option<[f64; 2]> {
     let known = Known::of(study, settings, rows);
-    let place: Vec<f64> = known.free.iter().zip(values).map(|(own, value)| own.share(*value)).collect();
+    // The order of the parameters is that of the stored study.
+    let share = |own: &FreeParameter| {
+        let value = point.iter().find(|(name, _)| name == own.parameter.name).map(|(_, value)| *value);
+        value.map(|value| own.share(value))
+    };
+    let place = known.free.iter().map(share).collect::<Option<Vec<f64>>>()?;
     let all = known.history.at(&place).into_iter().map(|own| own.implausibility);
-    [all.fold(0.0, f64::max), known.history.cutoff()]
+    Some([all.fold(0.0, f64::max), known.history.cutoff()])
 }
 
 /// The rows of each point of the free parameters, by their values.

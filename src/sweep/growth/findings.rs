@@ -37,8 +37,8 @@ pub async fn read_growth(
     Ok(Some(found))
 }
 
-/// The implausibility of a point in a study that is calibrated, and the one above which it is ruled out. `values` are those of the free
-/// parameters, in the order of the study. Returns `None` if the study is not calibrated.
+/// The implausibility of a point in a study that is calibrated, and the one above which it is ruled out. `point` has the
+/// values of the free parameters by their names. Returns `None` if the study is not calibrated, or if one of them is missing.
 ///
 /// # Errors
 /// As [`read_growth`].
@@ -46,11 +46,11 @@ pub async fn read_implausibility(
     queue: &mut Queue,
     study: &str,
     rows: &[JobRow],
-    values: &[f64],
+    point: &[(String, f64)],
 ) -> Result<Option<[f64; 2]>, SweepError> {
     let Some(study) = readable_study(queue, study).await? else { return Ok(None) };
     let settings = study.growth().calibrate.as_ref();
-    Ok(settings.map(|own| calibrate::implausibility(&study, own, rows, values)))
+    Ok(settings.and_then(|own| calibrate::implausibility(&study, own, rows, point)))
 }
 
 fn waves(rows: &[JobRow]) -> Vec<BTreeMap<String, u64>> {
