@@ -158,6 +158,9 @@ pub(crate) async fn write(
         log(format_args!("warning: {sentence}"));
     }
     let written = sweep::write_content(queue, content, folder, refresh_s).await?;
+    for sentence in &written.verdicts {
+        log(sentence);
+    }
     for sentence in &written.unmatched {
         log(format_args!("warning: {sentence}"));
     }

@@ -38,6 +38,7 @@ pub(super) struct Comparison {
 /// One quantity of a point, and of the reference at the same place.
 pub(super) struct Difference {
     pub source: String,
+    pub is_measured: bool,
     pub scalar: &'static Scalar,
     /// Values of the parameters, as in [`Comparison::names`], and their texts.
     pub parameters: Vec<Value>,
@@ -175,6 +176,7 @@ impl Comparison {
                 let words = [group.caption(), layout.series_name(&layout.series[*index])];
                 self.differences.push(Difference {
                     source: job.row.study.clone(),
+                    is_measured: job.row.is_measured(),
                     scalar,
                     texts,
                     parameters,
@@ -311,6 +313,11 @@ impl Comparison {
                 .collect()
         };
         (head, self.differences.iter().map(line))
+    }
+
+    /// Short name with the unit of the parameter along the axis.
+    pub fn axis_label(&self) -> &str {
+        self.labels.last().map_or("", String::as_str)
     }
 
     /// What the tables mean.

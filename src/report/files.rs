@@ -40,6 +40,8 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
 pub struct Written {
     /// Its files.
     pub files: Vec<PathBuf>,
+    /// How far the first source is from each of the others, in sentences.
+    pub verdicts: Vec<String>,
     /// Where only one of a source and the first source squeals: a head and lines; empty if nowhere.
     pub contradictions: Vec<String>,
     /// Of each source none of whose points can be compared with the first source, a sentence.
@@ -129,6 +131,9 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     }
     if let Some(comparison) = &comparison {
         folder.write_table(&comparison_files::table(comparison))?;
+        if let Some(chart) = figure::differences::draw(comparison) {
+            folder.write_text(figure::differences::FILE, &chart.svg(figure::differences::TITLE))?;
+        }
     }
     let differences = comparison.as_ref();
     let parts = Parts {
@@ -145,10 +150,11 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let page = page::of_report(&parts);
     folder.write_text("report.html", &html::of_page(&page))?;
     folder.write_text("report.md", &markdown::of_page(&page))?;
+    let verdicts = comparison.as_ref().map_or_else(Vec::new, Comparison::verdicts);
     let contradictions = comparison.as_ref().map_or_else(Vec::new, Comparison::contradictions_in_words);
     let unmatched = comparison.map_or_else(Vec::new, |comparison| comparison.unmatched);
     let files = folder.finish()?;
-    Ok(Written { files, contradictions, unmatched })
+    Ok(Written { files, verdicts, contradictions, unmatched })
 }
 
 /// Writes the figures of the plots, and returns those that have room in the page with their drawings.

@@ -50,6 +50,7 @@ pub mod tables;
 mod times;
 mod tooltip;
 pub mod trouble;
+mod verdict;
 mod view;
 mod windows;
 mod words;

@@ -84,6 +84,11 @@ impl Scalar {
         self.shown.digits
     }
 
+    /// What it is called in a sentence: the symbol, or the title.
+    pub(super) fn words(&self) -> &str {
+        if self.symbol().is_empty() || !self.unit().is_empty() { self.shown.title } else { self.symbol() }
+    }
+
     /// A short name with the unit, for a table with several quantities: the symbol, if there is no unit that it would not say.
     pub(super) fn short_title(&self) -> String {
         let is_enough = !self.symbol().is_empty() && self.unit().is_empty();

@@ -63,6 +63,41 @@ fn measured_points_are_compared_with_the_study() {
     assert!(page.contains("## Comparison"), "{page}");
 }
 
+/// Protects: a comparison begins with how far the simulation is from the measured values, in which direction, and where it agrees.
+#[test]
+fn the_verdict_comes_first() {
+    let verdicts = |points: &[JobRow]| {
+        let mut rows = study("simulated", 0.3);
+        rows.extend(points.iter().cloned());
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let written = write_compared(&report(&rows), folder.path()).expect("the report is written");
+        let page = fs::read_to_string(folder.path().join("report.md")).expect("a page");
+        let page = page.replace("\\*", "*");
+        assert!(written.verdicts.iter().all(|verdict| page.contains(verdict)), "{page}");
+        let chart = fs::read_to_string(folder.path().join("differences.svg")).expect("a figure");
+        assert!(chart.contains("difference of μ* [%]"), "{chart}");
+        written.verdicts
+    };
+    let at = |omega, mu_star, error| measured(omega, 0.4, mu_star, error);
+    // The study has 0.30, 0.31 and 0.32 with an error of 0.0005.
+    assert_eq!(
+        verdicts(&[at(1.0, 0.4, Some(0.01)), at(10.0, 0.4, Some(0.01))])[0],
+        "μ*: simulated is 23 % below rig at all 2 points (−25 % to −23 %); within two standard errors at 0 of 2."
+    );
+    assert_eq!(
+        verdicts(&[at(1.0, 0.302, Some(0.01)), at(10.0, 0.305, Some(0.01))])[0],
+        "μ*: simulated agrees with rig within two standard errors at all 2 points (−0.7 % to +1.6 %)."
+    );
+    assert_eq!(
+        verdicts(&[at(1.0, 0.33, Some(0.001)), at(10.0, 0.311, Some(0.001)), at(100.0, 0.3, Some(0.001))])[0],
+        "μ*: simulated differs from rig by −9.1 % to +6.7 %; within two standard errors at 1 of 3."
+    );
+    assert_eq!(
+        verdicts(&[at(10.0, 0.2, Some(0.001))])[0],
+        "μ*: simulated is 55 % above rig at the one point that is compared; within two standard errors at 0 of 1."
+    );
+}
+
 /// Protects: the export beside a comparison has what was measured, with its error, under the names of what was computed.
 #[test]
 fn measured_values_are_in_the_export() {

@@ -3,6 +3,7 @@
 mod bifurcation;
 mod cells;
 mod curves;
+pub(super) mod differences;
 mod edges;
 mod places;
 pub(super) mod residuals;

@@ -4,12 +4,17 @@ use crate::publish::page::{Block, Figure, Grid, MOST_DATA, Section, Text};
 use crate::publish::value;
 use crate::report::calibration::{self, Calibration};
 use crate::report::comparison::Comparison;
+use crate::report::figure::differences;
 use crate::report::growth::Findings;
 use crate::report::program::{self, Programs};
 
 /// The differences between several sources.
 pub(super) fn comparison(own: &Comparison) -> Section {
+    let verdicts = own.verdicts();
     let mut blocks = Vec::new();
+    if !verdicts.is_empty() {
+        blocks.push(Block::list(verdicts.iter().map(|verdict| Text::strong(verdict.as_str()))));
+    }
     if let [head, lines @ ..] = &own.contradictions_in_words()[..] {
         blocks.push(Block::Warning(Text::strong(head.as_str()), lines.iter().map(Text::from).collect()));
     }
@@ -22,6 +27,14 @@ pub(super) fn comparison(own: &Comparison) -> Section {
         blocks.push(Block::Text(words.into()));
     } else {
         blocks.push(Block::Table(grid(&heads, lines)));
+        if let Some(chart) = differences::draw(own) {
+            blocks.push(Block::figure(Figure {
+                file: differences::FILE.to_owned(),
+                svg: chart.svg(differences::TITLE),
+                caption: DIFFERENCES.to_owned(),
+                data: None,
+            }));
+        }
         let (heads, lines) = own.table();
         let all = vec![Block::Table(grid(&heads, lines))];
         blocks.push(Block::Fold("Table: all differences".to_owned(), all));
@@ -29,6 +42,9 @@ pub(super) fn comparison(own: &Comparison) -> Section {
     }
     Section::new("comparison", "Comparison", blocks)
 }
+
+const DIFFERENCES: &str = "How far the simulation is from the measured values, as a share of them; of two studies, how far the other one is from the first. \
+                           Error bars: the known errors of both together.";
 
 fn grid(heads: &[String], lines: impl IntoIterator<Item = Vec<String>>) -> Grid {
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();

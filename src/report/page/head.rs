@@ -20,6 +20,8 @@ pub(super) fn lead(parts: &Parts) -> Vec<Block> {
     let mut blocks: Vec<Block> =
         report.description.map(|text| Block::Text(text.into())).into_iter().collect();
     blocks.extend(found(parts).into_iter().map(|sentence| Block::Text(Text::strong(sentence))));
+    let verdicts = parts.comparison.iter().flat_map(|own| own.verdicts());
+    blocks.extend(verdicts.map(|sentence| Block::Text(Text::strong(sentence))));
     if let Some(head) = parts.comparison.and_then(|own| own.contradictions_in_words().into_iter().next()) {
         let link = Span::Link("where".to_owned(), "#comparison".to_owned());
         blocks.push(Block::Text(Text::strong(head.trim_end_matches(':')).and(" (").and(link).and(").")));

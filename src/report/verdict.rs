@@ -1,0 +1,84 @@
+//! What a comparison says first: how far the simulation is from what was measured, and in which direction.
+
+use super::comparison::{Comparison, Difference};
+use crate::publish::value::{count, fixed};
+
+/// Differences within so many standard errors agree.
+const AGREE: f64 = 2.0;
+
+impl Difference {
+    /// How far the simulation is from the measured value, as a share of it; of two studies, how far the other one is from the reference.
+    /// None if the value is zero.
+    pub(super) fn deviation(&self) -> Option<f64> {
+        let (own, of) =
+            if self.is_measured { (self.reference, self.value) } else { (self.value, self.reference) };
+        Some((own - of) / of.abs()).filter(|share| share.is_finite())
+    }
+
+    /// The combined error as a share of the same value; none if no error is known.
+    pub(super) fn error_of_deviation(&self) -> Option<f64> {
+        let of = if self.is_measured { self.value } else { self.reference };
+        Some(self.combined_error()? / of.abs()).filter(|share| share.is_finite() && *share > 0.0)
+    }
+}
+
+impl Comparison {
+    /// A sentence for each source and quantity, in the order of the sources.
+    pub(super) fn verdicts(&self) -> Vec<String> {
+        let same = |a: &Difference, b: &Difference| a.source == b.source && a.scalar == b.scalar;
+        self.differences.chunk_by(same).filter_map(|part| self.verdict(part)).collect()
+    }
+
+    fn verdict(&self, part: &[Difference]) -> Option<String> {
+        let first = part.first()?;
+        let mut deviations: Vec<f64> = part.iter().filter_map(Difference::deviation).collect();
+        deviations.sort_by(f64::total_cmp);
+        let (least, most) = (*deviations.first()?, *deviations.last()?);
+        let (own, of) = if first.is_measured {
+            (&self.reference, &first.source)
+        } else {
+            (&first.source, &self.reference)
+        };
+        let points = match deviations.len() {
+            1 => "at the one point that is compared".to_owned(),
+            several => format!("at all {}", count(several as u64, "point")),
+        };
+        let judged: Vec<bool> = part
+            .iter()
+            .filter_map(|one| Some(one.deviation()?.abs() <= AGREE * one.error_of_deviation()?))
+            .collect();
+        let within = judged.iter().filter(|agrees| **agrees).count();
+        let what = first.scalar.words();
+        let range = match deviations.len() {
+            1 => String::new(),
+            _ => format!(" ({} to {})", signed(least), signed(most)),
+        };
+        if !judged.is_empty() && within == judged.len() && judged.len() == deviations.len() {
+            return Some(format!(
+                "{what}: {own} agrees with {of} within two standard errors {points}{range}."
+            ));
+        }
+        let middle = deviations[deviations.len() / 2];
+        let deviates = if least > 0.0 || most < 0.0 {
+            let way = if middle < 0.0 { "below" } else { "above" };
+            format!("{own} is {} {way} {of} {points}{range}", share(middle.abs()))
+        } else {
+            format!("{own} differs from {of} by {} to {}", signed(least), signed(most))
+        };
+        let errors = if judged.is_empty() {
+            String::new()
+        } else {
+            format!("; within two standard errors at {within} of {}", judged.len())
+        };
+        Some(format!("{what}: {deviates}{errors}."))
+    }
+}
+
+fn share(x: f64) -> String {
+    format!("{} %", fixed(100.0 * x, usize::from(x.abs() < 0.1)))
+}
+
+fn signed(x: f64) -> String {
+    let sign = if x < 0.0 { "−" } else { "+" };
+    format!("{sign}{}", share(x.abs()))
+}
