@@ -191,19 +191,6 @@ impl Kernels {
         Some((Emulator { kernel: number, weights, coefficients, variance }, check))
     }
 
-    /// An emulator of labels −1 and 1 with mean 0 and variance 1.
-    pub fn labels(
-        &mut self,
-        of: &[usize],
-        places: &[Vec<f64>],
-        labels: &[f64],
-        scales: &Scales,
-    ) -> Option<Emulator> {
-        let kernel = self.number(of, places, scales)?;
-        let (coefficients, weights, _) = self.0[kernel].1.solve(&DVector::from_column_slice(labels));
-        Some(Emulator { kernel, weights, coefficients, variance: 1.0 })
-    }
-
     /// All kernels seen from a place.
     pub fn at(&self, place: &[f64]) -> Vec<Near> {
         self.0.iter().map(|(_, kernel)| kernel.at(place)).collect()

@@ -15,6 +15,19 @@ pub struct Check {
     pub root_mean_square: f64,
 }
 
+/// How well a run fits what was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Fit {
+    /// Measured values that it can be compared with.
+    pub compared: usize,
+    /// Points where it squeals and steady sliding was measured, or the other way round.
+    pub other_state: usize,
+    /// The largest distance from a measured value, in standard deviations of measurement, discrepancy and mesh.
+    pub largest: f64,
+    /// The sum of the squares of these distances.
+    pub square_sum: f64,
+}
+
 /// All runs, the measured points, and the emulators between them.
 #[derive(Debug)]
 pub struct History {
@@ -79,30 +92,45 @@ impl History {
         self.states.iter().zip(&self.targets).map(assess).collect()
     }
 
-    /// What a run gave, as an assessment without emulators: the number of its measured values that can be compared, the sum of the squares of
-    /// their implausibilities, and the largest one. A run that squeals where steady sliding was measured, or the other way round, has an
-    /// infinite one.
-    pub fn of_run(&self, run: &Run) -> (usize, Assessment) {
-        let mut all = Assessment::default();
-        let mut compared = 0;
+    /// How well a run fits what was measured.
+    pub fn of_run(&self, run: &Run) -> Fit {
+        let mut fit = Fit::default();
         for (target, outcome) in self.targets.iter().zip(&run.outcomes) {
             let Some(outcome) = outcome else { continue };
-            if let (Some(measured), Some(own)) = (target.squeals, outcome.squeals)
-                && measured != own
-            {
-                (all.implausibility, all.square_sum) = (f64::INFINITY, f64::INFINITY);
+            if let (Some(measured), Some(own)) = (target.squeals, outcome.squeals) {
+                fit.other_state += usize::from(measured != own);
             }
             for (measured, own) in target.values.iter().zip(&outcome.values) {
                 let (Some(measured), Some(own)) = (measured, own) else { continue };
                 let mesh = own.mesh_deviation.unwrap_or(0.0);
-                let implausibility =
-                    Expected { mean: own.value, emulator: 0.0, mesh }.implausibility(measured);
-                compared += 1;
-                all.square_sum += implausibility.powi(2);
-                all.implausibility = all.implausibility.max(implausibility);
+                let distance = Expected { mean: own.value, emulator: 0.0, mesh }.implausibility(measured);
+                fit.compared += 1;
+                fit.square_sum += distance.powi(2);
+                fit.largest = fit.largest.max(distance);
             }
         }
-        (compared, all)
+        fit
+    }
+
+    /// The run that fits best, with its number: of those that have at least half as many values as the most, the one that squeals wrongly at
+    /// the fewest points, and of these the one with the smallest mean square of distances.
+    pub fn best_run(&self) -> Option<(usize, Fit)> {
+        let fits: Vec<Fit> = self.runs.iter().map(|run| self.of_run(run)).collect();
+        let most = fits.iter().map(|fit| fit.compared).max()?;
+        let key = |fit: &Fit| (fit.other_state, fit.square_sum / fit.compared.max(1) as f64);
+        let all = fits.into_iter().enumerate().filter(|(_, fit)| 2 * fit.compared >= most);
+        all.reduce(|best, own| {
+            let (a, b) = (key(&best.1), key(&own.1));
+            if b.0 < a.0 || b.0 == a.0 && b.1 < a.1 { own } else { best }
+        })
+    }
+
+    /// Whether the runs around a place squeal and slide steadily where it was measured which of the two.
+    pub(super) fn is_disputed(&self, place: &[f64]) -> bool {
+        let is_so = |(states, target): (&States, &Target)| {
+            target.squeals.is_some() && states.is_disputed(place, &self.runs)
+        };
+        self.states.iter().zip(&self.targets).any(is_so)
     }
 }
 

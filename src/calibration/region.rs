@@ -47,6 +47,9 @@ const MARGIN: f64 = 0.1;
 /// implausible then.
 const SMALL: f64 = 0.35;
 
+/// The boundary of squeal is known where at most this share of the region is near runs of both kinds.
+const DISPUTED: f64 = 0.2;
+
 /// Places of the region that are compared for the next runs.
 const COMPARED: usize = 512;
 
@@ -54,9 +57,14 @@ const COMPARED: usize = 512;
 const SAME: f64 = 0.02;
 
 impl History {
-    /// The region that is not ruled out. `candidates` gives so many places that fill the unit cube evenly; its first argument is the number
-    /// of the box, so that boxes have different places.
-    pub fn region(&self, candidates: impl Fn(usize, usize) -> Vec<Vec<f64>>) -> Region {
+    /// The region that is not ruled out. `candidates` gives so many places that fill the unit cube evenly, its second argument, or fewer if it
+    /// cannot give as many; its first argument is the number of the box, so that boxes have different places. `is_possible` says whether a job
+    /// can have a place.
+    pub fn region(
+        &self,
+        candidates: impl Fn(usize, usize) -> Vec<Vec<f64>>,
+        is_possible: impl Fn(&[f64]) -> bool + Sync,
+    ) -> Region {
         let Some(parameters) = self.runs().first().map(|run| run.place.len()) else {
             return Region::default();
         };
@@ -64,13 +72,19 @@ impl History {
         let mut tried = TRIED * parameters;
         let mut best: Option<Candidate> = None;
         for number in 0..BOXES {
-            let mut found: Vec<Candidate> = candidates(number, tried)
+            let places = candidates(number, tried);
+            let count = places.len();
+            let mut found: Vec<Candidate> = places
                 .into_par_iter()
-                .map(|unit| {
+                .filter_map(|unit| {
                     let place = unit.iter().zip(&bounds).map(|(u, [low, high])| low + u * (high - low));
-                    self.candidate(place.collect())
+                    let place: Vec<f64> = place.collect();
+                    is_possible(&place).then(|| self.candidate(place))
                 })
                 .collect();
+            if found.is_empty() {
+                return Region { best, ..Region::default() };
+            }
             for own in &found {
                 if best.as_ref().is_none_or(|best| own.implausibility < best.implausibility) {
                     best = Some(own.clone());
@@ -80,11 +94,11 @@ impl History {
             if inside >= ENOUGH || number + 1 == BOXES {
                 let volume: f64 = bounds.iter().map(|[low, high]| high - low).product();
                 found.retain(|own| own.implausibility <= self.cutoff());
-                return Region { share: volume * inside as f64 / tried as f64, inside: found, best };
+                return Region { share: volume * inside as f64 / count as f64, inside: found, best };
             }
             let mut sorted: Vec<f64> = found.iter().map(|own| own.implausibility).collect();
             sorted.sort_by(f64::total_cmp);
-            let kept = sorted[(KEPT * tried as f64) as usize].max(self.cutoff());
+            let kept = sorted[(KEPT * sorted.len() as f64) as usize].max(self.cutoff());
             found.retain(|own| own.implausibility <= kept);
             let next = around(&found, &bounds);
             let volume = |of: &[[f64; 2]]| of.iter().map(|[low, high]| high - low).product::<f64>();
@@ -126,7 +140,15 @@ impl History {
     /// Whether further runs would not change the region much: it is empty, or the emulators are exact enough in it and its best place was run.
     pub fn is_known(&self, region: &Region) -> bool {
         region.inside.is_empty()
-            || self.share_of_emulators(region) <= SMALL && self.is_new(region, best_fit(region)).is_none()
+            || self.share_of_emulators(region) <= SMALL
+                && self.share_disputed(region) <= DISPUTED
+                && self.is_new(region, best_fit(region)).is_none()
+    }
+
+    /// The share of the region where runs that squeal and runs that slide steadily are near each other, and it was measured which of the two.
+    fn share_disputed(&self, region: &Region) -> f64 {
+        let disputed = region.inside.iter().filter(|own| self.is_disputed(&own.place)).count();
+        disputed as f64 / region.inside.len().max(1) as f64
     }
 
     /// The best fit, if no run is near it.

@@ -8,11 +8,9 @@ use super::emulator::{Emulator, Group, Kernels, LeaveOneOut, Near, Scales, best_
 use super::values::{Assessment, Expected, LOG_FREQUENCY, Outcome, QUANTITIES, Run, Target};
 use nalgebra::{DMatrix, DVector};
 
-/// The length over which it is known whether runs squeal, in units of the ranges.
-const LABEL_LENGTH: f64 = 0.4;
-
-/// The noise of labels. It keeps the matrix regular.
-const LABEL_NOISE: f64 = 1.0e-4;
+/// Runs around a place that must all be of another state to rule a state out, for each parameter. Next to a straight boundary each of them is on
+/// either side with the same probability, so that a state is ruled out wrongly in one of 2³ places with one parameter, of 2⁶ with two.
+const AROUND: usize = 3;
 
 /// Frequencies that are further from a smooth trend than this, as a logarithm, are those of another branch. Period doubling is 0.69.
 const JUMP: f64 = 0.3;
@@ -23,17 +21,23 @@ const MOST_BRANCHES: usize = 3;
 /// What is known at a measured point.
 #[derive(Debug, Default)]
 pub(super) struct States {
-    /// 1 where runs squeal, and −1 where they slide steadily; none without runs.
-    squeals: Option<Emulator>,
+    /// Runs that slide steadily and runs that squeal, by the numbers of their states.
+    kinds: Vec<(usize, Kind)>,
     states: Vec<State>,
+}
+
+/// What a run is known to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Kind {
+    squeals: bool,
+    /// The number of the branch of its frequency; none if it has no frequency.
+    branch: Option<usize>,
 }
 
 /// Runs between which values are smooth.
 #[derive(Debug)]
 struct State {
-    squeals: bool,
-    /// 1 in this branch, and −1 in others; none if there is one branch.
-    is_branch: Option<Emulator>,
+    kind: Kind,
     values: [Option<Emulator>; QUANTITIES],
     /// The errors that the mesh makes in the values of runs, where they are known, with the numbers of the runs.
     mesh: [Vec<(usize, f64)>; QUANTITIES],
@@ -44,10 +48,8 @@ struct State {
 /// The runs of a state before there are emulators.
 struct Draft {
     target: usize,
-    squeals: bool,
+    kind: Kind,
     runs: Vec<usize>,
-    /// Runs that squeal on another branch.
-    others: Vec<usize>,
 }
 
 /// The states at all measured points. `checks` gets the check of each emulator with the number of its quantity.
@@ -59,7 +61,6 @@ pub(super) fn all(
 ) -> Vec<States> {
     let places: Vec<Vec<f64>> = runs.iter().map(|run| run.place.clone()).collect();
     let parameters = places.first().map_or(0, Vec::len);
-    let labels = Scales { lengths: vec![LABEL_LENGTH; parameters], nugget: LABEL_NOISE, has_trend: false };
     let mut states: Vec<States> = targets.iter().map(|_| States::default()).collect();
     let mut drafts = Vec::new();
     for (target, own) in states.iter_mut().enumerate() {
@@ -69,20 +70,27 @@ pub(super) fn all(
             (0..runs.len()).filter(is_so).collect()
         };
         let (stable, squealing) = (of(false), of(true));
-        own.squeals = labelled(&squealing, &stable, &places, &labels, kernels);
-        drafts.push(Draft { target, squeals: false, runs: stable, others: Vec::new() });
-        let branches = branches(&squealing, runs, target);
-        for (number, branch) in branches.iter().enumerate() {
-            let others = branches.iter().enumerate().filter(|(other, _)| *other != number);
-            let others = others.flat_map(|(_, runs)| runs.iter().copied()).collect();
-            drafts.push(Draft { target, squeals: true, runs: branch.clone(), others });
+        let steady = Kind { squeals: false, branch: None };
+        own.kinds.extend(stable.iter().map(|at| (*at, steady)));
+        drafts.push(Draft { target, kind: steady, runs: stable });
+        for (number, runs_of_branch) in branches(&squealing, runs, target).into_iter().enumerate() {
+            let kind = Kind { squeals: true, branch: Some(number) };
+            let has_frequency = |at: &usize| {
+                outcome(&runs[*at], target).is_some_and(|own| own.values[LOG_FREQUENCY].is_some())
+            };
+            own.kinds.extend(
+                runs_of_branch
+                    .iter()
+                    .map(|at| (*at, if has_frequency(at) { kind } else { Kind { branch: None, ..kind } })),
+            );
+            drafts.push(Draft { target, kind, runs: runs_of_branch });
         }
     }
     drafts.retain(|draft| !draft.runs.is_empty());
     // Length scales are those of the physics, so they are common to all measured points.
     let scales = |squeals: bool, quantity: usize| {
         let mut groups: Vec<Group> = Vec::new();
-        for draft in drafts.iter().filter(|draft| draft.squeals == squeals) {
+        for draft in drafts.iter().filter(|draft| draft.kind.squeals == squeals) {
             let (of, values) = column(draft, quantity, runs);
             if is_enough(of.len(), parameters) {
                 let values = DVector::from_vec(values);
@@ -96,7 +104,7 @@ pub(super) fn all(
     };
     let scales = [false, true].map(|squeals| std::array::from_fn(|quantity| scales(squeals, quantity)));
     for draft in &drafts {
-        let own: &[Option<Scales>; QUANTITIES] = &scales[usize::from(draft.squeals)];
+        let own: &[Option<Scales>; QUANTITIES] = &scales[usize::from(draft.kind.squeals)];
         let values = std::array::from_fn(|quantity| {
             targets[draft.target].values[quantity]?;
             let (of, values) = column(draft, quantity, runs);
@@ -105,20 +113,17 @@ pub(super) fn all(
             checks.push((quantity, check));
             Some(emulator)
         });
-        let is_branch = (!draft.others.is_empty())
-            .then(|| labelled(&draft.runs, &draft.others, &places, &labels, kernels))
-            .flatten();
         let mesh = std::array::from_fn(|quantity| {
             let known = |at: &usize| Some((*at, mesh_of(draft, *at, quantity, runs)?));
             draft.runs.iter().filter_map(known).collect()
         });
         let largest_mesh = std::array::from_fn(|quantity| {
-            let alike = drafts.iter().filter(|other| other.squeals == draft.squeals);
+            let alike = drafts.iter().filter(|other| other.kind.squeals == draft.kind.squeals);
             let known = alike
                 .flat_map(|other| other.runs.iter().filter_map(|at| mesh_of(other, *at, quantity, runs)));
             known.fold(0.0, f64::max)
         });
-        let state = State { squeals: draft.squeals, is_branch, values, mesh, largest_mesh };
+        let state = State { kind: draft.kind, values, mesh, largest_mesh };
         states[draft.target].states.push(state);
     }
     states
@@ -137,21 +142,6 @@ fn mesh_of(draft: &Draft, at: usize, quantity: usize, runs: &[Run]) -> Option<f6
 fn column(draft: &Draft, quantity: usize, runs: &[Run]) -> (Vec<usize>, Vec<f64>) {
     let value = |at: &usize| Some((*at, outcome(&runs[*at], draft.target)?.values[quantity]?.value));
     draft.runs.iter().filter_map(value).unzip()
-}
-
-/// An emulator that is 1 at some places and −1 at others; none without any.
-fn labelled(
-    of: &[usize],
-    others: &[usize],
-    places: &[Vec<f64>],
-    scales: &Scales,
-    kernels: &mut Kernels,
-) -> Option<Emulator> {
-    let mut labels: Vec<(usize, f64)> =
-        of.iter().map(|at| (*at, 1.0)).chain(others.iter().map(|at| (*at, -1.0))).collect();
-    labels.sort_by_key(|(at, _)| *at);
-    let (of, labels): (Vec<usize>, Vec<f64>) = labels.into_iter().unzip();
-    if of.is_empty() { None } else { kernels.labels(&of, places, &labels, scales) }
 }
 
 /// Runs that squeal, by the branch of their frequency: those near one linear trend, then those near the trend of the rest. Runs without a
@@ -210,20 +200,18 @@ fn distances(of: &[(&[f64], f64)]) -> Vec<f64> {
     distances
 }
 
-/// How far a label is on the wrong side, in standard deviations.
-fn wrong_side((mean, deviation): (f64, f64), is_wanted: bool) -> f64 {
-    let towards = if is_wanted { mean } else { -mean };
-    (-towards).max(0.0) / deviation
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
 }
 
 impl State {
     /// The standard deviation of the error that the mesh makes at a place: the largest of those of the nearest runs, one more than there are
     /// parameters. If none of the state knows its own, that of the other measured points.
     fn mesh_at(&self, place: &[f64], quantity: usize, runs: &[Run]) -> f64 {
-        let distance =
-            |at: usize| -> f64 { runs[at].place.iter().zip(place).map(|(a, b)| (a - b).powi(2)).sum() };
-        let mut near: Vec<(f64, f64)> =
-            self.mesh[quantity].iter().map(|(at, error)| (distance(*at), *error)).collect();
+        let mut near: Vec<(f64, f64)> = self.mesh[quantity]
+            .iter()
+            .map(|(at, error)| (distance(&runs[*at].place, place), *error))
+            .collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
         near.iter()
             .take(place.len() + 1)
@@ -234,17 +222,32 @@ impl State {
 }
 
 impl States {
+    /// The kinds of the nearest runs of which something is known.
+    fn around(&self, place: &[f64], runs: &[Run]) -> Vec<Kind> {
+        let mut near: Vec<(f64, usize, Kind)> =
+            self.kinds.iter().map(|(at, kind)| (distance(&runs[*at].place, place), *at, *kind)).collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        near.iter().take(AROUND * place.len()).map(|(_, _, kind)| *kind).collect()
+    }
+
+    /// Whether the runs around a place are of different kinds.
+    pub fn is_disputed(&self, place: &[f64], runs: &[Run]) -> bool {
+        let around = self.around(place, runs);
+        around.iter().any(|kind| kind.squeals != around[0].squeals)
+    }
+
     /// What a place is expected to give: of the states that were measured, or of all if that is not known, the one that fits best.
     pub fn assess(&self, place: &[f64], target: &Target, near: &[Near], runs: &[Run]) -> Assessment {
-        let of_squeals = |is_wanted: bool| {
-            self.squeals.as_ref().map_or(0.0, |label| wrong_side(label.at(near), is_wanted))
-        };
-        let is_possible = |state: &&State| target.squeals.is_none_or(|own| own == state.squeals);
+        let around = self.around(place, runs);
+        let is_around =
+            |wanted: &dyn Fn(&Kind) -> bool| around.len() < AROUND * place.len() || around.iter().any(wanted);
+        let is_measured = |squeals: bool| target.squeals.is_none_or(|own| own == squeals);
         let of_state = |state: &State| {
-            let of_branch = state.is_branch.as_ref().map_or(0.0, |label| wrong_side(label.at(near), true));
-            let of_kind = of_squeals(state.squeals).max(of_branch);
-            let mut all =
-                Assessment { implausibility: of_kind, square_sum: of_kind.powi(2), ..Assessment::default() };
+            let Kind { squeals, branch } = state.kind;
+            // A run whose branch is not known may be of any.
+            let is_possible = is_measured(squeals)
+                && is_around(&|own| own.squeals == squeals && (own.branch.is_none() || own.branch == branch));
+            let mut all = Assessment::default();
             for (quantity, (emulator, measured)) in state.values.iter().zip(&target.values).enumerate() {
                 let (Some(emulator), Some(measured)) = (emulator, measured) else { continue };
                 let (mean, deviation) = emulator.at(near);
@@ -255,13 +258,19 @@ impl States {
                 all.square_sum += own.powi(2);
                 all.values[quantity] = Some(expected);
             }
+            if !is_possible {
+                (all.implausibility, all.square_sum) = (f64::INFINITY, f64::INFINITY);
+                all.is_other_state = true;
+            }
             all
         };
-        let best = self.states.iter().filter(is_possible).map(of_state);
+        let best = self.states.iter().filter(|state| is_measured(state.kind.squeals)).map(of_state);
         let best = best.reduce(|best, own| if own.implausibility < best.implausibility { own } else { best });
         best.unwrap_or_else(|| {
-            let implausibility = target.squeals.map_or(0.0, of_squeals);
-            Assessment { implausibility, square_sum: implausibility.powi(2), ..Assessment::default() }
+            // No run is of the state that was measured.
+            let is_other_state = !is_around(&|own| is_measured(own.squeals));
+            let implausibility = if is_other_state { f64::INFINITY } else { 0.0 };
+            Assessment { implausibility, square_sum: implausibility, is_other_state, ..Assessment::default() }
         })
     }
 }

@@ -82,4 +82,7 @@ pub struct Assessment {
     pub square_sum: f64,
     /// The expected values of the measured quantities, where there is an emulator.
     pub values: [Option<Expected>; QUANTITIES],
+    /// Whether it is ruled out because all runs around it squeal and the machine does not, or the other way round. The implausibility is
+    /// infinite then.
+    pub is_other_state: bool,
 }

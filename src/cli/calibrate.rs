@@ -10,7 +10,7 @@ use super::work::{Checkpoints, Retries, Threads, options, work_on};
 use crate::publish::value::significant;
 use crate::queue::{Clock, Location, Queue, Shard};
 use crate::report::Calibration as Found;
-use crate::study::{Calibration, Discrepancy};
+use crate::study::{Calibration, DiscrepancyGiven};
 use crate::sweep::{self, CalibrationData, Plan, ReportRequest};
 use serde_json::json;
 use std::path::PathBuf;
@@ -32,8 +32,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME=SHARE", value_parser = discrepancy)]
     discrepancy: Vec<(Of, f64)>,
     /// Largest number of points of the free parameters; a point has a job for each measured point. Default: 30 for each parameter.
-    #[arg(long, value_name = "N")]
-    most_points: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    most_points: Option<u16>,
     /// Say also how implausible this point is, such as mu=0.4,young_modulus_pa=2e9: a value for each free parameter.
     #[arg(long, value_delimiter = ',', value_name = "NAME=VALUE", value_parser = named_number)]
     at: Vec<(String, f64)>,
@@ -65,10 +65,20 @@ fn named_number(text: &str) -> Result<(String, f64), String> {
 fn check_point(at: &[(String, f64)], plan: &Plan) -> Result<(), CliError> {
     let free: Vec<&str> = plan.study().free_parameters().iter().map(|own| own.parameter.name).collect();
     let has_all = free.iter().all(|name| at.iter().any(|(own, _)| own == name));
-    if at.is_empty() || has_all && at.len() == free.len() {
-        return Ok(());
+    if !at.is_empty() && (!has_all || at.len() != free.len()) {
+        return Err(CliError::Usage(format!("--at: expected one value for each of {}", free.join(", "))));
     }
-    Err(CliError::Usage(format!("--at: expected one value for each of {}", free.join(", "))))
+    for own in plan.study().free_parameters().iter().filter(|own| own.has_ends()) {
+        let [low, high] = [0.0, 1.0].map(|share| own.value(share).as_f64().unwrap_or(f64::NAN));
+        let name = own.parameter.name;
+        let is_out = |(given, value): &&(String, f64)| given == name && !(low..=high).contains(value);
+        if let Some((_, value)) = at.iter().find(is_out) {
+            return Err(CliError::Usage(format!(
+                "--at {name}={value}: expected a value from {low} to {high}, the range of the study"
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// What a discrepancy is of.
@@ -102,13 +112,15 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         None => (None, Vec::new()),
     };
     let share = |of: Of| args.discrepancy.iter().rev().find(|(own, _)| *own == of).map(|(_, share)| *share);
-    let discrepancy = (!args.discrepancy.is_empty()).then(|| Discrepancy {
-        mu_star: share(Of::MuStar).unwrap_or(0.0),
-        frequency: share(Of::Frequency).unwrap_or(0.0),
-    });
-    let calibration =
-        Calibration { free: args.free.clone(), data: points, discrepancy, most_points: args.most_points };
+    let discrepancy = DiscrepancyGiven { mu_star: share(Of::MuStar), frequency: share(Of::Frequency) };
+    let calibration = Calibration {
+        free: args.free.clone(),
+        data: points,
+        discrepancy,
+        most_points: args.most_points.map(usize::from),
+    };
     let names: Vec<String> = settings.iter().map(|(name, _)| name.clone()).collect();
+    let set: Vec<String> = args.study.set_names().map(str::to_owned).collect();
     let plan = args.study.plan_of_calibration(calibration, settings)?;
     if let Some(free) =
         plan.study().free_parameters().iter().find(|own| names.iter().any(|name| own.parameter.name == name))
@@ -119,6 +131,11 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         )));
     }
     let name = plan.name();
+    let is_set = |name: &str| set.iter().any(|own| own == name);
+    if let Some(free) = plan.study().free_parameters().iter().find(|own| is_set(own.parameter.name)) {
+        let name = free.parameter.name;
+        return Err(CliError::Usage(format!("--set {name}: it is free; expected --free without it")));
+    }
     check_point(&args.at, &plan)?;
     report::create_folder(name, &args.out)?;
     sweep::block_on(async {

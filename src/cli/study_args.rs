@@ -76,6 +76,11 @@ impl StudyArgs {
         Ok(Plan::load_changed(&self.file, &changes)?)
     }
 
+    /// The names of the parameters that `--set` gives.
+    pub(crate) fn set_names(&self) -> impl Iterator<Item = &str> {
+        self.settings.iter().map(|(name, _)| name.as_str())
+    }
+
     fn changes(&self) -> Changes {
         let (name, settings) =
             (self.name.clone(), self.accuracy.iter().chain(&self.settings).cloned().collect());

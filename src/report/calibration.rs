@@ -35,8 +35,8 @@ pub struct Calibration {
     pub run: Vec<Vec<f64>>,
     /// How well the emulators foretold runs that were left out, by the names of the quantities.
     pub checks: Vec<Check>,
-    /// The errors of the emulators over all others, as the root mean square over the region for the worst value.
-    pub emulators: f64,
+    /// Whether further runs would not change the region much.
+    pub is_known: bool,
     /// Values of runs that squeal whose error of the mesh is not known, and all of them.
     pub unknown_mesh: [usize; 2],
 }
@@ -61,15 +61,14 @@ pub struct Free {
 pub struct Fit {
     /// The values of the free parameters.
     pub values: Vec<f64>,
-    /// The largest distance from a measured value, in standard deviations of measurement, discrepancy and mesh; infinite if it squeals where
-    /// steady sliding was measured, or the other way round.
+    /// The largest distance from a measured value, in standard deviations of measurement, discrepancy and mesh.
     pub largest: f64,
     /// The root mean square of these distances.
     pub root_mean_square: f64,
     /// Measured values that it can be compared with.
     pub compared: usize,
-    /// Whether the emulators keep its place.
-    pub is_inside: bool,
+    /// Points where it squeals and steady sliding was measured, or the other way round.
+    pub other_state: usize,
 }
 
 /// The least implausible place if everything is ruled out.
@@ -79,8 +78,10 @@ pub struct Nearest {
     pub values: Vec<f64>,
     /// Its implausibility.
     pub implausibility: f64,
-    /// The measured value that rules it out, by its number.
-    pub worst: usize,
+    /// The quantity that rules it out, or `squeals`.
+    pub of: &'static str,
+    /// The parameters of the measured point.
+    pub place: Vec<(String, Value)>,
 }
 
 /// A measured value, and what the simulation gives there.
@@ -94,8 +95,8 @@ pub struct Datum {
     pub measured: Value,
     /// Its standard deviation.
     pub error: Option<f64>,
-    /// The value of the best run.
-    pub best: Option<f64>,
+    /// The value of the best run; null if it has none.
+    pub best: Value,
     /// The smallest and the largest value that emulators expect inside the region.
     pub band: Option<[f64; 2]>,
 }
@@ -133,7 +134,7 @@ const DATA: [Column<Datum>; 6] = [
     Column::new("of", "", "measured quantity", |own| own.of.into()),
     Column::new("measured", "that of the quantity", "measured value", |own| own.measured.clone()),
     Column::new("error", "that of the quantity", "its standard deviation, without the discrepancy", |own| own.error.into()),
-    Column::new("best", "that of the quantity", "value of the run that fits best", |own| own.best.map(|x| value::significant_number(x, 5)).into()),
+    Column::new("best", "that of the quantity", "value of the run that fits best", |own| own.best.clone()),
     Column::new("region_from", "that of the quantity", "smallest value that emulators expect where nothing is ruled out", |own| own.band.map(|[low, _]| value::significant_number(low, 5)).into()),
     Column::new("region_to", "that of the quantity", "largest value", |own| own.band.map(|[_, high]| value::significant_number(high, 5)).into()),
 ];
@@ -189,26 +190,39 @@ impl Calibration {
         let mut words = Vec::new();
         let all = format!("{} ({})", count(self.points as u64, "point"), count(self.jobs as u64, "job"));
         if let Some(nearest) = &self.nearest {
-            let datum = &self.data[nearest.worst];
             let place: Vec<String> =
-                datum.place.iter().map(|(name, value)| assignment(name, value)).collect();
+                nearest.place.iter().map(|(name, value)| assignment(name, value)).collect();
             let at = if place.is_empty() { String::new() } else { format!(" at {}", place.join(", ")) };
+            let why = if nearest.implausibility.is_infinite() {
+                format!("squeals{at} where the machine does not, or the other way round")
+            } else {
+                let distance = value::significant(nearest.implausibility, 2);
+                format!("is {distance} standard deviations away from {}{at}", nearest.of)
+            };
             words.push(format!(
-                "No point of these ranges explains the data, after {all}. The nearest one, {}, is {} standard deviations away from {}{at}.",
-                self.point(&nearest.values),
-                value::significant(nearest.implausibility, 2),
-                datum.of
+                "No point of these ranges explains the data, after {all}. The nearest one, {}, {why}.",
+                self.point(&nearest.values)
             ));
         } else if self.points > 0 {
             let share = value::significant(100.0 * self.share, 2);
             words
                 .push(format!("The data leave {share} % of the ranges of the free parameters, after {all}."));
+            let has_emulator = self.checks.iter().any(|check| check.values > 0);
+            let has_values = self.data.iter().any(|own| own.error.is_some());
+            if has_values && !has_emulator {
+                words.push(
+                    "Too few runs have a result for an emulator, so their values rule out nothing yet."
+                        .to_owned(),
+                );
+            } else if !self.is_known {
+                words.push("More points would make the region smaller.".to_owned());
+            }
         }
         for free in &self.free {
             let Some([low, high]) = free.region else { continue };
             words.push(if free.left >= NOTHING_SAID {
                 format!(
-                    "They say nearly nothing about {}: {} % of its range are left.",
+                    "They say nearly nothing about {}: {} % of its range is left.",
                     free.name,
                     value::fixed(100.0 * free.left, 0)
                 )
@@ -239,7 +253,7 @@ impl Calibration {
         let [unknown, values] = self.unknown_mesh;
         if unknown > 0 {
             let counts = if unknown == values {
-                "it counts as nothing, so that places may be ruled out wrongly; `\"run\": { \"start\": \"nested\" }` makes it known"
+                "it counts as nothing, so that places may be ruled out wrongly; `mesh_error_unknown` in `jobs.csv` says why it is unknown"
             } else {
                 "it counts as the largest one of the neighbours that know it"
             };
@@ -252,17 +266,25 @@ impl Calibration {
 
     fn best_in_words(&self, best: &Fit) -> String {
         let point = self.point(&best.values);
-        if best.largest.is_infinite() {
-            return format!(
-                "The best run, {point}, squeals where steady sliding was measured, or the other way round."
-            );
-        }
-        format!(
-            "The best run, {point}, is within {} standard deviations of all {} values that it can be compared with (root mean square {}).",
-            value::significant(best.largest, 2),
-            best.compared,
-            value::significant(best.root_mean_square, 2)
-        )
+        let other = if best.other_state == 0 {
+            String::new()
+        } else {
+            format!(
+                ", and at {} it squeals where the machine does not, or the other way round",
+                count(best.other_state as u64, "point")
+            )
+        };
+        let distance = if best.compared == 0 {
+            "has no value that was measured".to_owned()
+        } else {
+            format!(
+                "is up to {} standard deviations away from the {} that it can be compared with (root mean square {})",
+                value::significant(best.largest, 2),
+                count(best.compared as u64, "value"),
+                value::significant(best.root_mean_square, 2)
+            )
+        };
+        format!("The best run, {point}, {distance}{other}.")
     }
 
     /// The answer for programs.
@@ -277,6 +299,9 @@ impl Calibration {
             "best": best,
             "region": region,
             "ruled_out": 1.0 - self.share,
+            "is_known": self.is_known,
+            "largest_distance_of_best": self.best.as_ref().map(|best| best.largest),
+            "wrong_states_of_best": self.best.as_ref().map(|best| best.other_state),
             "points": self.points,
             "jobs": self.jobs,
         })

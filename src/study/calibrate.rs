@@ -85,6 +85,13 @@ pub const FIRST_POINTS: usize = 10;
 const LARGEST: usize = 1000;
 
 impl MeasuredPoint {
+    /// Whether another point has the same parameters. 5 and 5.0 are one number.
+    fn is_at(&self, other: &Self) -> bool {
+        let same = |a: &Value, b: &Value| a == b || a.is_number() && a.as_f64() == b.as_f64();
+        self.at.len() == other.at.len()
+            && self.at.iter().all(|(name, value)| other.at.get(name).is_some_and(|own| same(value, own)))
+    }
+
     /// Whether it squeals, if that is known.
     pub fn squeals(&self) -> Option<bool> {
         self.squeals.or(self.frequency_hz.map(|_| true))
@@ -135,7 +142,7 @@ impl Calibrate {
         for (number, point) in self.data.iter().enumerate() {
             let field = format!("calibrate.data[{number}]");
             found.extend(point.problems(&field, along, source));
-            let is_twice = self.data[..number].iter().any(|other| other.at == point.at);
+            let is_twice = self.data[..number].iter().any(|other| other.is_at(point));
             if is_twice {
                 let message = "an earlier point has the same parameters; expected their mean";
                 found.push(source.problem(&format!("{field}.at"), message));
@@ -204,6 +211,25 @@ impl MeasuredPoint {
     }
 }
 
+/// Parts of a discrepancy that a command gives.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DiscrepancyGiven {
+    /// Of μ*.
+    pub mu_star: Option<f64>,
+    /// Of the frequency.
+    pub frequency: Option<f64>,
+}
+
+impl DiscrepancyGiven {
+    /// The parts that are given, and the others of `own`.
+    pub(super) fn over(self, own: Discrepancy) -> Discrepancy {
+        Discrepancy {
+            mu_star: self.mu_star.unwrap_or(own.mu_star),
+            frequency: self.frequency.unwrap_or(own.frequency),
+        }
+    }
+}
+
 /// A calibration that a command asks for.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Calibration {
@@ -211,8 +237,8 @@ pub struct Calibration {
     pub free: Vec<String>,
     /// What was measured; none if the study says it.
     pub data: Option<Vec<MeasuredPoint>>,
-    /// Instead of that of the study.
-    pub discrepancy: Option<Discrepancy>,
+    /// Instead of that of the study, where it is given.
+    pub discrepancy: DiscrepancyGiven,
     /// Instead of that of the study.
     pub most_points: Option<usize>,
 }

@@ -1,6 +1,7 @@
 //! The study of a calibration: free parameters, whose points are drawn at all measured points.
 
-use super::calibrate::{Calibrate, Calibration, EXAMPLE, FIRST_POINTS, wave_points};
+use super::axis::Axis;
+use super::calibrate::{Calibrate, Calibration, Discrepancy, EXAMPLE, FIRST_POINTS, wave_points};
 use super::definition::Study;
 use super::error::{Problem, StudyError};
 use super::file::StudyFile;
@@ -12,6 +13,7 @@ use super::samples::distribution::Distribution;
 use super::samples::given::SamplesFile;
 use super::source::{Change, GROWTH, SourceText};
 use super::suggest::nearest_name;
+use crate::spec::Limit;
 use serde_json::{Map, Value, json};
 
 /// A parameter that measured points are to tell.
@@ -26,6 +28,12 @@ impl FreeParameter {
     /// The value below which a share of its distribution lies.
     pub fn value(&self, share: f64) -> Value {
         self.distribution.value(share, &self.parameter.kind)
+    }
+
+    /// Whether a job can have the value below which a share of its distribution lies.
+    pub fn is_possible(&self, share: f64) -> bool {
+        let value = self.value(share).as_f64();
+        value.is_some_and(|value| Limit::of(&self.parameter.field()).is_none_or(|limit| limit.holds(value)))
     }
 
     /// Whether its distribution has two ends.
@@ -60,6 +68,12 @@ pub(super) fn problems(own: &Calibrate, grid: &Grid, source: &SourceText) -> Vec
         let message = "expected `samples` with a `design` and distributions of the free parameters";
         return vec![source.problem("calibrate", message).with_help(EXAMPLE)];
     };
+    let is_list = |own: &Distribution| matches!(own, Distribution::Discrete(_));
+    if let Some(at) = samples.distributions.iter().position(is_list) {
+        let field = format!("samples.of.{}", samples.parameters[at].name);
+        let message = "expected a distribution of numbers, such as uniform [low, high]: a calibration looks between values";
+        return vec![source.problem(&field, message)];
+    }
     let along: Vec<_> = grid.axes.iter().map(|axis| (axis.parameter, axis.values.as_slice())).collect();
     own.problems((&samples.parameters, samples.rows.len()), &along, source)
 }
@@ -100,17 +114,32 @@ impl Outline {
             let help = "give a CSV file with --data";
             return refuse(self.source.problem("calibrate", message).with_help(help));
         };
+        let measured =
+            |axis: &&Axis| data.first().is_none_or(|point| point.at.contains_key(axis.parameter.name));
+        if let Some(axis) = self.grid.axes.iter().find(|axis| !measured(axis) && axis.values.len() > 1) {
+            let message = "the measured points have no value of it; expected a grid without it, or a column of the data";
+            return refuse(self.source.problem(&axis.path(), message));
+        }
+        // An axis with one value says what every point has.
+        let single: Vec<Axis> = self.grid.axes.iter().filter(|axis| !measured(axis)).cloned().collect();
+        for axis in single {
+            self.grid.axes.retain(|other| other.parameter != axis.parameter);
+            axis.parameter.set(&mut self.document, &axis.values[0]);
+        }
         let calibrate = Calibrate {
             data,
-            discrepancy: asked.discrepancy.or_else(|| own.map(|own| own.discrepancy)).unwrap_or_default(),
+            discrepancy: asked.discrepancy.over(own.map_or_else(Discrepancy::default, |own| own.discrepancy)),
             most_points: asked.most_points.or_else(|| own.and_then(|own| own.most_points)),
             wave_points: own.map_or_else(wave_points, |own| own.wave_points),
         };
         let first = (FIRST_POINTS * of.len()).min(calibrate.most_points(of.len()).max(1));
         let seed = self.document.pointer("/samples/seed").cloned().unwrap_or_else(|| 0.into());
         let samples = json!({ "design": "sobol", "count": first, "seed": seed, "of": of });
-        let free = of.keys().cloned().collect::<Vec<_>>().join(", ");
-        self.source.changes.extend([Change::of_name("", &name), Change::of_growth("--data", &free)]);
+        self.source.changes.push(Change::of_name("", &name));
+        // What the study itself says of measured points keeps its place in messages.
+        if asked.data.is_some() {
+            self.source.changes.push(Change::of_growth("--data", "the measured points"));
+        }
         let read: SamplesFile =
             serde_json::from_value(samples.clone()).expect("the fields are those of samples");
         let read = read.read(&StudyFile::template(), &self.source).map_err(StudyError::Invalid)?;

@@ -44,8 +44,6 @@ impl MakeOperators<f64> for Operators {
             Operator::make_bin("/", binary(|a, b| a / b, 3)),
             Operator::make_bin_unary("+", binary(|a, b| a + b, 0), |a| a),
             Operator::make_bin_unary("-", binary(|a, b| a - b, 1), |a| -a),
-            Operator::make_bin("min", binary(f64::min, 0)),
-            Operator::make_bin("max", binary(f64::max, 0)),
             Operator::make_unary("sqrt", f64::sqrt),
             Operator::make_unary("exp", libm::exp),
             Operator::make_unary("ln", libm::log),
@@ -165,10 +163,13 @@ struct Refusal {
 
 impl Tie {
     fn read(parameter: &'static Parameter, text: &str) -> Result<Self, Refusal> {
-        let expression = Expression::parse(text).map_err(|error| Refusal {
-            message: format!("not an expression: {error}; expected numbers, parameters, + - * / ^ ( ), min, max, sqrt, exp, ln, abs, pi"),
-            unknown: None,
+        let refuse = |message: &str| Refusal { message: message.to_owned(), unknown: None };
+        let expression = Expression::parse(text).map_err(|_| {
+            refuse("not an expression; expected numbers, parameters, + - * / ^ ( ), sqrt(), exp(), ln(), abs(), pi, with an operator between two values")
         })?;
+        if has_unclear_power(text) {
+            return Err(refuse("unclear order of powers; expected brackets, such as -(mu^2) or 2^(3^2)"));
+        }
         let input = |name: &String| match Parameter::find(name) {
             Some(own) if matches!(own.kind, Kind::Number | Kind::Count) => Ok(own),
             Some(_) => Err(Refusal { message: format!("{name} is no number"), unknown: None }),
@@ -181,12 +182,46 @@ impl Tie {
     }
 }
 
+/// Whether a sign stands before the base of a power, or a power is the base of another one without brackets: programs differ in what they make
+/// of these.
+fn has_unclear_power(text: &str) -> bool {
+    let letters: Vec<char> = text.chars().filter(|letter| !letter.is_whitespace()).collect();
+    let is_part = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == '.';
+    letters.iter().enumerate().filter(|(_, letter)| **letter == '^').any(|(at, _)| {
+        let mut start = at;
+        if start > 0 && letters[start - 1] == ')' {
+            let mut open = 0;
+            while start > 0 {
+                start -= 1;
+                open += i32::from(letters[start] == ')') - i32::from(letters[start] == '(');
+                if open == 0 {
+                    break;
+                }
+            }
+        }
+        while start > 0 && is_part(letters[start - 1]) {
+            start -= 1;
+        }
+        let before = start.checked_sub(1).map(|at| letters[at]);
+        let two_before = start.checked_sub(2).map(|at| letters[at]);
+        let is_sign =
+            matches!(before, Some('-' | '+')) && two_before.is_none_or(|own| !is_part(own) && own != ')');
+        before == Some('^') || is_sign
+    })
+}
+
 /// The ties in an order in which each comes after those that it depends on; otherwise the parameters of a circle.
 fn sorted(mut left: Vec<Tie>) -> Result<Vec<Tie>, Vec<&'static Parameter>> {
     let mut sorted: Vec<Tie> = Vec::new();
     while !left.is_empty() {
         let waits = |tie: &Tie| tie.inputs.iter().any(|own| left.iter().any(|other| other.parameter == *own));
         let Some(at) = left.iter().position(|tie| !waits(tie)) else {
+            // What only depends on a circle is no part of it.
+            while let Some(at) =
+                left.iter().position(|tie| !left.iter().any(|other| other.inputs.contains(&tie.parameter)))
+            {
+                left.remove(at);
+            }
             return Err(left.iter().map(|tie| tie.parameter).collect());
         };
         sorted.push(left.remove(at));

@@ -63,7 +63,7 @@ mod time_defaults;
 mod validate;
 mod with_unit;
 
-pub use calibrate::{Calibrate, Calibration, Discrepancy, MeasuredPoint};
+pub use calibrate::{Calibrate, Calibration, Discrepancy, DiscrepancyGiven, MeasuredPoint};
 pub use calibration::{FreeParameter, sobol_points};
 pub use chains::chains_of;
 pub use change::{Basins, Changes};

@@ -89,6 +89,16 @@ pub fn read_calibration_data(path: &Path) -> Result<CalibrationData, SweepError>
     }
     for (number, own) in points.iter().enumerate() {
         let place = line(&file, number);
+        for (name, value) in [
+            ("mu_star", own.mu_star),
+            ("mu_star_error", own.mu_star_error),
+            ("frequency_hz", own.frequency_hz),
+            ("frequency_error_hz", own.frequency_error_hz),
+        ] {
+            if let Some(value) = value.filter(|value| *value <= 0.0) {
+                return refuse(format!("line {place}: {name} = {value}: expected a number > 0"));
+            }
+        }
         if own.frequency_hz.is_some() && own.squeals == Some(false) {
             return refuse(format!(
                 "line {place}: it has a frequency, and squeals is no; expected one of the two"

@@ -101,6 +101,8 @@ fn unusable_data_are_refused() {
             "mu is free, and the measured points have a value of it",
         ),
         ("omega_rpm,mu_star,mu_star\n5,0.3,0.3\n", "the file has this column twice"),
+        ("omega_rpm,mu_star,mu_star_error\n5,0.3,0\n", "line 2: mu_star_error = 0: expected a number > 0"),
+        ("omega_rpm,mu_star,mu_star_error\n5,-0.3,0.1\n", "line 2: mu_star = -0.3: expected a number > 0"),
     ] {
         folder.write("data.csv", data);
         let message = stderr(&folder.command("calibrate study.json --data data.csv").assert().code(2));
@@ -119,7 +121,9 @@ fn unusable_data_are_refused() {
         ("--free nu", "did you mean `poisson_ratio`?"),
         ("--at mu=0.3,nu=1", "--at: expected one value for each of mu"),
         ("--set omega_rpm=7", "--set omega_rpm: the measured points have this parameter"),
-        ("--most-points 0", "expected a number of points from 1"),
+        ("--at mu=0.7", "--at mu=0.7: expected a value from 0.3 to 0.6, the range of the study"),
+        ("--set mu=0.4", "--set mu: it is free"),
+        ("--most-points 0", "0 is not in 1..=1000"),
     ] {
         let command = format!("calibrate study.json --data data.csv {options}");
         let message = stderr(&folder.command(&command).assert().code(2));

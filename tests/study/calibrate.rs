@@ -60,10 +60,16 @@ fn mistakes_are_named() {
             "calibrate.data[1].at = {\"omega_rpm\":20}: an earlier point has the same parameters",
         ),
         ("/samples", json!({ "points": [{ "mu": 0.3 }] }), "expected `samples` with a `design`"),
+        ("/calibrate/data/0/at/omega_rpm", json!(20.0), "an earlier point has the same parameters"),
         (
             "/samples/of",
-            json!({ "clamp_side": { "discrete": ["inner_side"] } }),
-            "clamp_side: expected free parameters that are numbers",
+            json!({ "mu": { "discrete": [0.3, 0.4] } }),
+            "samples.of.mu = {\"discrete\":[0.3,0.4]}: expected a distribution of numbers",
+        ),
+        (
+            "/samples/of",
+            json!({ "nx": { "uniform": [4, 8] } }),
+            "nx: expected free parameters that are numbers",
         ),
     ] {
         assert_contains(&refusal(&with(pointer, value)), expected);

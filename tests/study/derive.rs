@@ -39,7 +39,7 @@ fn ties_follow_their_parameters() {
 /// Protects: ties of ties come in the right order, whatever the order of the file, and the usual rules of arithmetic hold.
 #[test]
 fn expressions_are_those_of_arithmetic() {
-    let mut chain = tied("max(friction_speed_m_s, 0.2) + mu");
+    let mut chain = tied("friction_speed_m_s + mu");
     chain["derive"]["friction_speed_m_s"] = "2e-1 * 2 ^ 2 - 0.3 / 3 * sqrt(4)".into();
     chain["scene"]["contact"]["law"] = "exponential".into();
     let study = parsed(&chain);
@@ -68,6 +68,12 @@ fn mistakes_are_named() {
     refusal(&tied("1.4 * muu"), "derive.mu_static = \"1.4 * muu\": muu: no such parameter");
     refusal(&tied("1.4 * muu"), "did you mean `mu`?");
     refusal(&tied("1.4 * * mu"), "derive.mu_static = \"1.4 * * mu\": not an expression");
+    for unclear in ["-2^2", "-mu^2", "2^3^2", "exp(-mu^2)", "2 * -(1 + mu)^2", "-sqrt(mu)^2", "(-mu^2)"] {
+        refusal(&tied(unclear), "unclear order of powers; expected brackets");
+    }
+    for clear in ["2 - mu^2", "2 * mu^2", "(1 - mu)^2 / mu^2", "2^(-1)", "1 - (-mu)^2"] {
+        Study::parse(&tied(clear).to_string(), "x.json").unwrap();
+    }
     refusal(&tied("friction_law"), "friction_law is no number");
     refusal(&tied("mu_static + 1"), "they depend on each other in a circle: mu_static");
     refusal(&tied("1 / (mu - mu)"), "expected an expression with a finite value");
@@ -75,6 +81,8 @@ fn mistakes_are_named() {
     refusal(&tied("ramp_s"), "expected a value of ramp_s in the study or its grid");
     let mut circle = tied("friction_speed_m_s");
     circle["derive"]["friction_speed_m_s"] = "mu_static".into();
+    refusal(&circle, "in a circle: friction_speed_m_s, mu_static");
+    circle["derive"]["young_modulus_pa"] = "friction_speed_m_s * 1e9".into();
     refusal(&circle, "in a circle: friction_speed_m_s, mu_static");
     let mut both = tied("2 * mu");
     both["grid"]["mu_static"] = json!([0.5]);

@@ -4,9 +4,8 @@
 //! the logarithm of the frequency, whose errors are shares.
 
 use crate::analysis::{JobRecord, MeshError, Outcome, Regime};
-use crate::calibration::{
-    self, Candidate, Computed, History, LOG_FREQUENCY, Measured, QUANTITIES, Region, Run, Target,
-};
+use crate::calibration::{self, Candidate, Computed, History, LOG_FREQUENCY, Measured, Region, Run, Target};
+use crate::publish::value::significant_number;
 use crate::report::{Calibration, Check, Datum, FREQUENCY, Fit, Free, JobRow, MU_STAR, Nearest};
 use crate::study::{Calibrate, FreeParameter, MeasuredPoint, Spacing, Study, sobol_points};
 use indexmap::IndexMap;
@@ -23,6 +22,9 @@ const SEED: u64 = 0x0ca1_1b4a;
 
 /// Values of the region in a report.
 const SHOWN: usize = 400;
+
+/// The name of whether a point squeals, as in files of measured points.
+const SQUEALS: &str = "squeals";
 
 /// The shares of a distribution that are shown as its ends where it has none.
 const ENDS: [f64; 2] = [0.001, 0.999];
@@ -108,6 +110,10 @@ fn points<'a>(rows: &'a [JobRow], free: &[FreeParameter]) -> IndexMap<Vec<u64>, 
     found
 }
 
+fn place_of(point: &MeasuredPoint) -> Vec<(String, Value)> {
+    point.at.iter().map(|(name, value)| (name.clone(), value.clone())).collect()
+}
+
 fn target(point: &MeasuredPoint, settings: &Calibrate) -> Target {
     let measured = |value: f64, error: f64, discrepancy: f64| Measured {
         value,
@@ -174,7 +180,10 @@ impl<'a> Known<'a> {
         let targets = settings.data.iter().map(|point| target(point, settings)).collect();
         let history = History::new(runs, targets);
         let parameters = free.len();
-        let region = history.region(|number, count| sobol_points(count, parameters, SEED + number as u64));
+        let region = history.region(
+            |number, count| sobol_points(count, parameters, SEED + number as u64),
+            |place| free.iter().zip(place).all(|(own, share)| own.is_possible(*share)),
+        );
         Self { study, settings, free, history, region }
     }
 
@@ -238,28 +247,21 @@ impl<'a> Known<'a> {
             checks: checks
                 .map(|(own, of)| Check { of, values: own.values, within_two: own.within_two })
                 .collect(),
-            emulators: history.share_of_emulators(region),
+            is_known: history.is_known(region),
             unknown_mesh: self.unknown_mesh(),
         }
     }
 
-    /// The run that fits best: of those that can be compared with the most measured values, that with the smallest sum of squares.
+    /// The run that fits best.
     fn best_run(&self) -> Option<(&Run, Fit)> {
-        let fits = self.history.runs().iter().map(|run| (run, self.history.of_run(run)));
-        let (run, (compared, own)) = fits.reduce(|best, own| {
-            let ((most, least), (compared, found)) = (&best.1, &own.1);
-            let is_better =
-                compared > most || compared == most && found.square_sum.total_cmp(&least.square_sum).is_lt();
-            if is_better { own } else { best }
-        })?;
-        let is_inside =
-            self.history.at(&run.place).iter().all(|own| own.implausibility <= self.history.cutoff());
+        let (number, own) = self.history.best_run()?;
+        let run = &self.history.runs()[number];
         let fit = Fit {
             values: self.values(&run.place),
-            largest: own.implausibility,
-            root_mean_square: (own.square_sum / compared.max(1) as f64).sqrt(),
-            compared,
-            is_inside,
+            largest: own.largest,
+            root_mean_square: (own.square_sum / own.compared.max(1) as f64).sqrt(),
+            compared: own.compared,
+            other_state: own.other_state,
         };
         Some((run, fit))
     }
@@ -268,8 +270,7 @@ impl<'a> Known<'a> {
     fn data(&self, best: Option<&Run>) -> Vec<Datum> {
         let mut found = Vec::new();
         for (number, point) in self.settings.data.iter().enumerate() {
-            let place: Vec<(String, Value)> =
-                point.at.iter().map(|(name, value)| (name.clone(), value.clone())).collect();
+            let place = place_of(point);
             let outcome = best.and_then(|run| run.outcomes[number].as_ref());
             let given = [
                 (MU_STAR.name, point.mu_star, point.mu_star_error),
@@ -288,40 +289,46 @@ impl<'a> Known<'a> {
                     of,
                     measured: measured.into(),
                     error,
-                    best: outcome.and_then(|own| own.values[quantity]).map(|own| in_unit(own.value)),
+                    best: outcome
+                        .and_then(|own| own.values[quantity])
+                        .map(|own| significant_number(in_unit(own.value), 5))
+                        .into(),
                     band: ends.map(|ends| ends.map(in_unit)),
                 });
             }
-            if point.mu_star.is_none() && point.frequency_hz.is_none() {
-                let measured = point.squeals.map(|own| if own { "yes" } else { "no" }).into();
-                found.push(Datum { place, of: "squeals", measured, error: None, best: None, band: None });
+            // A frequency says it, too.
+            if point.frequency_hz.is_none() && point.squeals.is_some() {
+                let word = |own: bool| Value::from(if own { "yes" } else { "no" });
+                let measured = point.squeals.map(word).unwrap_or_default();
+                let best = outcome.and_then(|own| own.squeals).map(word).unwrap_or_default();
+                found.push(Datum { place, of: SQUEALS, measured, error: None, best, band: None });
             }
         }
         found
     }
 
-    /// The measured value that rules out a place.
+    /// What rules out a place: the measured value with the largest implausibility, or whether it squeals.
     fn nearest(&self, own: &Candidate) -> Nearest {
-        let mut worst = (0, 0.0);
-        let mut number = 0;
-        for (at, target) in own.at.iter().zip(self.history.targets()) {
-            let values = target.values.iter().flatten().count().max(1);
-            let distances: Vec<f64> = (0..QUANTITIES)
-                .filter_map(|quantity| {
-                    let measured = target.values[quantity]?;
-                    Some(at.values[quantity].map_or(0.0, |expected| expected.implausibility(&measured)))
-                })
-                .collect();
-            for entry in 0..values {
-                // Without an emulator, it is ruled out because it squeals or does not.
-                let distance = distances.get(entry).copied().unwrap_or(at.implausibility);
-                if distance > worst.1 {
-                    worst = (number, distance);
+        let mut worst: Option<(f64, usize, &'static str)> = None;
+        for (number, (at, target)) in own.at.iter().zip(self.history.targets()).enumerate() {
+            let of_values =
+                [MU_STAR.name, FREQUENCY.name].into_iter().enumerate().filter_map(|(quantity, of)| {
+                    Some((at.values[quantity]?.implausibility(&target.values[quantity]?), of))
+                });
+            let of_state = at.is_other_state.then_some((f64::INFINITY, SQUEALS));
+            for (distance, of) in of_values.chain(of_state) {
+                if worst.is_none_or(|worst| distance > worst.0) {
+                    worst = Some((distance, number, of));
                 }
-                number += 1;
             }
         }
-        Nearest { values: self.values(&own.place), implausibility: own.implausibility, worst: worst.0 }
+        let (_, number, of) = worst.unwrap_or((0.0, 0, SQUEALS));
+        Nearest {
+            values: self.values(&own.place),
+            implausibility: own.implausibility,
+            of,
+            place: place_of(&self.settings.data[number]),
+        }
     }
 
     /// Values of runs that squeal whose error of the mesh is not known, of those that are compared with measured ones.
