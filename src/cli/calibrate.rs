@@ -171,6 +171,10 @@ fn as_json(found: &Found, at: Option<[f64; 2]>) -> String {
 
 fn as_text(found: &Found, at: Option<[f64; 2]>) -> String {
     let of_point = at.map(|[implausibility, cutoff]| {
+        if implausibility.is_infinite() {
+            return "The point of --at is ruled out: the runs around it squeal where the machine does not, or the other way round."
+                .to_owned();
+        }
         let is_out = if implausibility > cutoff { "ruled out" } else { "not ruled out" };
         format!(
             "The point of --at is {is_out}: its implausibility is {}, and the cutoff is {}.",

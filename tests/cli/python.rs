@@ -67,6 +67,28 @@ else:
 cube = tribosweep.grid(jobs, ["mu_star", "frequency_hz"])
 assert cube["mu_star"].sel(mu=0.4, omega_rpm=20) == same["mu_star"]
 assert dict(cube.sizes) == {"omega_rpm": 3, "mu": 2}, cube.sizes
+
+import numpy
+same_axis = tribosweep.run(study, db="sweep.db", out="report", replace=True, settings={"mu": numpy.float64(0.4), "omega_rpm": numpy.array([5, 20])})
+assert list(same_axis["job"]) == list(one["job"])
+assert tribosweep.validate({**study, "grid": {"mu": numpy.linspace(0.2, 0.4, 3)}})["jobs"] == 3
+
+modes = tribosweep.stability(study, db="sweep.db", out="modes", modes=2)
+assert len(modes) == 12 and set(modes["omega_rpm"]) == {5, 20, 50}, modes
+
+pin = {**study, "name": "pin", "samples": {"design": "sobol", "count": 1, "of": {"mu": {"uniform": [0.3, 0.6]}}}}
+del pin["grid"]
+truth = jobs[jobs["mu"] == 0.4][["omega_rpm", "mu_star", "frequency_hz"]]
+truth = truth.assign(mu_star_error=0.02 * truth["mu_star"], frequency_error_hz=0.02 * truth["frequency_hz"])
+found = tribosweep.calibrate(pin, truth, db="sweep.db", out="pin", at={"mu": 0.4}, most_points=14)
+low, high = found["region"]["mu"]
+assert low <= 0.4 <= high and high - low < 0.2 and not found["at"]["ruled_out"], found
+try:
+    tribosweep.calibrate(pin, truth.drop(columns="mu_star_error"), db="sweep.db", out="pin")
+except tribosweep.Error as error:
+    assert "mu_star_error is missing" in str(error) and error.code == 2, str(error)
+else:
+    raise AssertionError("data without errors")
 print("checked")
 "#;
 

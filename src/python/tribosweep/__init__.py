@@ -4,8 +4,10 @@
     jobs = tribosweep.run("studies/mini.json")              # a DataFrame, a row for each job
     record = tribosweep.solve("studies/mini.json", mu=0.4, omega_rpm=7)
     grid = tribosweep.grid(jobs, ["mu_star"])               # an xarray.Dataset over the parameters
+    modes = tribosweep.stability("studies/mini.json")       # a DataFrame, a row for each mode of steady sliding
+    found = tribosweep.calibrate("pin.json", "rig.csv")     # what measured points leave of the ranges of parameters
 
-`run` and `read` need pandas; `grid` also needs xarray. A study is the path of its file, or a dictionary with the same content.
+`run`, `read` and `stability` need pandas; `grid` also needs xarray. A study is the path of its file, or a dictionary with the same content.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-__all__ = ["Error", "InputWarning", "grid", "program", "read", "run", "solve"]
+__all__ = ["Error", "InputWarning", "calibrate", "grid", "program", "read", "run", "solve", "stability", "validate"]
 
 Study = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
@@ -80,15 +82,11 @@ def run(
     Raises Error if the study or the database is refused, or if the run was interrupted.
     """
     _pandas()  # Without it nothing is begun.
-    options = ["--db", os.fspath(db)]
     with _file_of(study) as path:
         changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
-        others = [] if threads is None else ["--threads", str(threads)]
-        others += [] if out is None else ["--out", os.fspath(out)]
-        others += ["--replace"] if replace else []
-        _, doubts = _call(["run", path, *changes, *others, *options], codes=_WITH_RESULTS)
+        _, doubts = _call(["run", path, *changes, *_options(db, out, threads, replace)], codes=_WITH_RESULTS)
         # It repeats the warnings of the run.
-        plan, _ = _call(["validate", path, *changes, "--json", "--replace", *options])
+        plan, _ = _call(["validate", path, *changes, "--json", "--replace", "--db", os.fspath(db)])
     jobs, further = _read(db, json.loads(plan)["study"])
     jobs.attrs["warnings"] = doubts + further
     _warn(doubts + further)
@@ -123,6 +121,88 @@ def solve(study: Study, *, preset: str | None = None, **settings: Any) -> dict[s
     return record
 
 
+def stability(
+    study: Study,
+    *,
+    db: str | os.PathLike[str] = "tribosweep.db",
+    out: str | os.PathLike[str] | None = None,
+    preset: str | None = None,
+    modes: int = 4,
+    threads: int | None = None,
+    replace: bool = False,
+    settings: Mapping[str, Any] | None = None,
+) -> pandas.DataFrame:
+    """Computes the complex modes of steady sliding at the points of a study, and returns a row for each of `modes` modes of each point.
+
+    The thresholds are in `thresholds.csv` of the report.
+
+    Raises Error if the study or the database is refused, or if the computation was interrupted.
+    """
+    frames = _pandas()
+    options = _options(db, out, threads, replace) + ["--modes", str(modes), "--json"]
+    with _file_of(study) as path:
+        changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
+        text, doubts = _call(["stability", path, *changes, *options], codes=_WITH_RESULTS)
+    found: pandas.DataFrame = frames.DataFrame([json.loads(line) for line in text.splitlines()])
+    found.attrs["warnings"] = doubts
+    _warn(doubts)
+    return found
+
+
+def calibrate(
+    study: Study,
+    data: str | os.PathLike[str] | pandas.DataFrame | None = None,
+    *,
+    free: Sequence[str] = (),
+    at: Mapping[str, float] | None = None,
+    discrepancy: Mapping[str, float] | None = None,
+    most_points: int | None = None,
+    db: str | os.PathLike[str] = "tribosweep.db",
+    out: str | os.PathLike[str] | None = None,
+    preset: str | None = None,
+    threads: int | None = None,
+    replace: bool = False,
+    settings: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    """Finds the values of free parameters that measured points do not rule out.
+
+    `data` is a CSV file or a frame with the same columns: omega_rpm, mu_star, mu_star_error, frequency_hz, frequency_error_hz, squeals. Without it
+    they are those of the study. The answer has `best`, `region` (None if everything is ruled out), `ruled_out`, `is_known`, `points` and `jobs`; with a
+    point `at`, also how implausible that is.
+
+    Raises Error if the study, the data or the database is refused, or if the run was interrupted.
+    """
+    options = _options(db, out, threads, replace) + ["--json"]
+    options += ["--free", ",".join(free)] if free else []
+    options += ["--at", ",".join(f"{name}={float(value)!r}" for name, value in at.items())] if at else []
+    options += [part for name, share in (discrepancy or {}).items() for part in ("--discrepancy", f"{name}={float(share)!r}")]
+    options += [] if most_points is None else ["--most-points", str(most_points)]
+    with _file_of(study) as path, tempfile.TemporaryDirectory() as folder:
+        if data is not None and not isinstance(data, (str, os.PathLike)):
+            table = Path(folder) / "data.csv"
+            data.to_csv(table, index=False)
+            data = table
+        options += [] if data is None else ["--data", os.fspath(data)]
+        changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
+        text, doubts = _call(["calibrate", path, *changes, *options], codes=_WITH_RESULTS)
+    found: dict[str, Any] = json.loads(text)
+    _warn(doubts)
+    return found
+
+
+def validate(study: Study, *, preset: str | None = None, settings: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Checks a study without running it, and returns what its jobs take.
+
+    What the program warns of is an InputWarning. Raises Error with all mistakes if the study is refused.
+    """
+    with _file_of(study) as path:
+        changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
+        text, doubts = _call(["validate", path, *changes, "--json"])
+    found: dict[str, Any] = json.loads(text)
+    _warn(doubts)
+    return found
+
+
 def grid(jobs: pandas.DataFrame, values: Sequence[str], over: Sequence[str] | None = None) -> xarray.Dataset:
     """Columns of jobs as arrays over their parameters; missing where the grid has no job.
 
@@ -143,9 +223,25 @@ def _pandas() -> Any:
     return pandas
 
 
+def _options(
+    db: str | os.PathLike[str], out: str | os.PathLike[str] | None, threads: int | None, replace: bool
+) -> list[str]:
+    options = ["--db", os.fspath(db)]
+    options += [] if out is None else ["--out", os.fspath(out)]
+    options += [] if threads is None else ["--threads", str(threads)]
+    return options + (["--replace"] if replace else [])
+
+
+def _plain(value: Any) -> Any:
+    """Numbers and arrays of numpy and pandas as those of JSON."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{value!r} is no number, text, list or dictionary")
+
+
 def _settings(settings: Mapping[str, Any] | None) -> list[str]:
     def text(value: Any) -> str:
-        return value if isinstance(value, str) else json.dumps(value)
+        return value if isinstance(value, str) else json.dumps(value, default=_plain)
 
     return [part for name, value in (settings or {}).items() for part in ("--set", f"{name}={text(value)}")]
 
@@ -158,7 +254,7 @@ def _file_of(study: Study) -> Iterator[str]:
         return
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "study.json"
-        path.write_text(json.dumps({"name": "study", **study}), encoding="utf-8")
+        path.write_text(json.dumps({"name": "study", **study}, default=_plain), encoding="utf-8")
         yield str(path)
 
 
