@@ -173,11 +173,11 @@ impl Kernels {
         values: &[f64],
         scales: &Scales,
     ) -> Option<(Emulator, LeaveOneOut)> {
-        let number = self.number(of, places, scales)?;
-        let kernel = &self.0[number].1;
-        if kernel.freedom() < FEWEST_SPARE {
+        if !is_enough(of.len(), scales.lengths.len()) {
             return None;
         }
+        let number = self.number(of, places, scales)?;
+        let kernel = &self.0[number].1;
         let (coefficients, weights, sum) = kernel.solve(&DVector::from_column_slice(values));
         let variance = sum / kernel.freedom();
         let mut check = LeaveOneOut { values: values.len(), ..LeaveOneOut::default() };
@@ -218,7 +218,7 @@ pub(super) fn best_scales(groups: &[Group], places: &[Vec<f64>], parameters: usi
     let likelihood = |scales: &Scales| -> f64 {
         let of_group = |(of, columns): &Group| {
             let places = of.iter().map(|at| places[*at].clone()).collect();
-            let kernel = Kernel::new(places, scales.clone()).filter(|own| own.freedom() >= FEWEST_SPARE);
+            let kernel = Kernel::new(places, scales.clone());
             kernel.map_or(f64::NEG_INFINITY, |kernel| kernel.log_likelihood(columns))
         };
         groups.iter().map(of_group).sum()

@@ -108,8 +108,7 @@ pub(super) fn all(
         let values = std::array::from_fn(|quantity| {
             targets[draft.target].values[quantity]?;
             let (of, values) = column(draft, quantity, runs);
-            let found = kernels.emulator(&of, &places, &values, own[quantity].as_ref()?);
-            let (emulator, check) = found.filter(|_| is_enough(of.len(), parameters))?;
+            let (emulator, check) = kernels.emulator(&of, &places, &values, own[quantity].as_ref()?)?;
             checks.push((quantity, check));
             Some(emulator)
         });

@@ -158,3 +158,24 @@ fn impossible_places_are_left_out() {
     let region = history.region(|seed, count| even(seed + 1, count, 2), |place| place[0] > 0.5);
     assert!((region.share - 0.5).abs() < 0.02 && region.extent()[0][0] > 0.5, "{}", region.share);
 }
+
+/// Protects: runs of which few or none have a value that was measured rule nothing out by it, and all numbers of runs and values work.
+#[test]
+fn few_values_have_no_emulator() {
+    let truth = [0.5, 0.5];
+    for count in 1..9 {
+        for values in 0..=count {
+            let mut runs: Vec<Run> = even(0, count, 2).into_iter().map(|place| run(place, &SPEEDS)).collect();
+            for own in runs.iter_mut().skip(values) {
+                // At some measured points only, so that the points differ in how many values they have.
+                for outcome in own.outcomes.iter_mut().skip(1).flatten() {
+                    outcome.values = [None, None];
+                }
+            }
+            let history = History::new(runs, measured(&truth, &SPEEDS, 0.02));
+            let region = history.region(|seed, count| even(seed + 1, count.min(200), 2), |_| true);
+            let has_emulator = history.checks().iter().any(|check| check.values > 0);
+            assert!(has_emulator || region.share > 0.5, "{count} {values}: {}", region.share);
+        }
+    }
+}
