@@ -2,6 +2,7 @@
 
 use super::findings_table::FindingsTable;
 use super::parameters::{self, assignment, in_words};
+use super::row::JobRow;
 use crate::publish::chart::palette::{BLUE, GREY, VERMILLION};
 use crate::publish::chart::{Axis, Chart, Entry, Layer, Marker, Panel, Point, Scale, Shape};
 use crate::publish::table::{Column, FileColumns, Table};
@@ -112,6 +113,9 @@ pub struct Check {
     pub within_two: usize,
 }
 
+/// Values of a parameter that differ by less than this share are one: they are rounded to nine digits.
+const SAME_VALUE: f64 = 1.0e-7;
+
 /// Correlations from which on two parameters are not told apart.
 const NOT_TOLD_APART: f64 = 0.8;
 
@@ -178,6 +182,19 @@ impl Calibration {
                 table: Table::of("calibration_data", &columns, &self.data),
             },
         ]
+    }
+
+    /// The jobs of the best run and the measured points; none without a best run. The runs are points of several parameters, so that tables and
+    /// figures of all of them would have a panel for each.
+    pub(super) fn rows_of_best(&self, rows: &[JobRow]) -> Option<Vec<JobRow>> {
+        let best = self.best.as_ref()?;
+        let is_own = |row: &JobRow| {
+            self.free.iter().zip(&best.values).all(|(free, value)| {
+                let own = row.parameters.get(&free.name).and_then(Value::as_f64);
+                own.is_some_and(|own| (own - value).abs() <= SAME_VALUE * value.abs())
+            })
+        };
+        Some(rows.iter().filter(|row| row.is_measured() || is_own(row)).cloned().collect())
     }
 
     fn point(&self, values: &[f64]) -> String {

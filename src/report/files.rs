@@ -54,7 +54,7 @@ pub struct Written {
 /// As [`write`](fn@write).
 pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, PublishError> {
     let mut folder = Folder::create(out_dir, "report")?;
-    let (given, shown) = (report, thinned(report.rows));
+    let (given, shown) = (report, shown(report));
     let report = &Report { rows: shown.as_deref().unwrap_or(given.rows), ..*given };
     let Report { rows, view, .. } = *report;
 
@@ -124,10 +124,11 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     if let (Some(comparison), Some(shown)) = (&mut comparison, &shown) {
         let [all, part] =
             [given.rows, shown.as_slice()].map(|rows| rows.iter().filter(|row| row.is_measured()).count());
-        comparison.notes.push(format!(
+        let note = format!(
             "Tables and figures show {part} of the {all} measured points, evenly through the files; this summary, differences.csv and \
              jobs.csv have all."
-        ));
+        );
+        comparison.notes.extend((part < all).then_some(note));
     }
     if let Some(comparison) = &comparison {
         folder.write_table(&comparison_files::table(comparison))?;
@@ -190,6 +191,12 @@ fn write_figures(
 
 /// Most measured points in tables and figures: more would make pages that no browser shows.
 const MOST_MEASURED: usize = 2000;
+
+/// The rows that tables and figures show; none if they show all.
+fn shown(report: &Report) -> Option<Vec<JobRow>> {
+    let calibration = report.findings.and_then(|own| own.calibration.as_ref());
+    calibration.and_then(|own| own.rows_of_best(report.rows)).or_else(|| thinned(report.rows))
+}
 
 /// The rows without most of the measured points, of which every k-th stays; none if there are few of them.
 fn thinned(rows: &[JobRow]) -> Option<Vec<JobRow>> {

@@ -91,6 +91,11 @@ pub(super) fn growth(own: &Findings) -> Section {
         blocks.push(Block::text(found.meaning));
         blocks.push(Block::Table(Grid::of_table(&found.table)));
     }
+    if own.calibration.is_some() {
+        blocks.push(Block::note(
+            "The other tables and figures of this page show the run that fits best. `jobs.csv` and the page to explore have all jobs.",
+        ));
+    }
     if let Some(chart) = own.calibration.as_ref().and_then(Calibration::chart) {
         blocks.push(Block::figure(Figure {
             file: calibration::PAIRS.to_owned(),
