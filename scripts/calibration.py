@@ -289,7 +289,9 @@ def page(all_rows):
             most = max(int(row["points"]) for row in own)
             small = sum(float(row["share"]) <= 0.1 for row in own)
             lines += ["", f"With {word} free parameters at most {most} points were run, and at most a tenth of the ranges was left in {small} of {len(own)}."]
-    lines += ["", "μ\\* and the frequency depend little on β_R beside the errors of noise and mesh, so much of its range stays wherever it is free."]
+    wide = [row["free"].split() for row in all_rows if len(row["free"].split()) == 2 and float(row["share"]) > 0.1]
+    if wide and all("beta_r_s" in free for free in wide):
+        lines += ["", "With two free parameters, more than a tenth was left only where `beta_r_s` is one of them."]
     out = [row for row in all_rows if row["inside"] != "yes"]
     if out:
         words = "; ".join(

@@ -106,7 +106,9 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let data = args.data.as_deref().map(sweep::read_calibration_data).transpose()?;
     let (points, settings) = match data {
         Some(CalibrationData { points, settings, left_out }) => {
-            left_out.iter().for_each(log);
+            if let Some(sentence) = left_out {
+                log(format_args!("warning: {sentence}"));
+            }
             (Some(points), settings)
         }
         None => (None, Vec::new()),

@@ -18,8 +18,6 @@ pub struct Calibration {
     pub data: Vec<Datum>,
     /// The share of the ranges that is not ruled out, weighted by the distributions.
     pub share: f64,
-    /// The implausibility above which a point is ruled out.
-    pub cutoff: f64,
     /// Points of the free parameters that were run.
     pub points: usize,
     /// Jobs of these points.

@@ -236,7 +236,6 @@ impl<'a> Known<'a> {
             free: free.collect(),
             data: self.data(best.as_ref().map(|(run, _)| *run)),
             share: region.share,
-            cutoff: history.cutoff(),
             points: points.len(),
             jobs: rows.len(),
             best: best.map(|(_, fit)| fit),
