@@ -2,7 +2,7 @@
 
 use super::checkpoint::Unreadable;
 use super::continuation;
-use super::error::{JobError, step_count};
+use super::error::{JobError, check_step};
 use super::lanes::{AnyLanes, Ended, one_lane};
 use super::mode::ComplexMode;
 use super::nested::{Beginning, CoarseStart, coarser, cost, is_same_width};
@@ -129,7 +129,7 @@ impl Batch {
         spec.check()?;
         assert!(self.takes(&spec), "a job of another model");
         assert!(self.jobs() < self.widest, "no more jobs than the widest");
-        step_count(spec.limit_of_run_s(), self.workload().time_step_s)?;
+        check_step(&spec, self.workload().time_step_s)?;
         if let Some(key) = spec.parent() {
             let model = self.lanes.model();
             let beginning = parent.and_then(|motion| continuation::beginning(&spec, model, motion));

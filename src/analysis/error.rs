@@ -1,7 +1,7 @@
 //! Why a job has no record.
 
 use crate::solver::SolverError;
-use crate::spec::Violations;
+use crate::spec::{JobSpec, Rise, Violations};
 use crate::stability::StabilityError;
 use thiserror::Error;
 
@@ -33,6 +33,21 @@ pub enum JobError {
         /// Their ratio.
         steps: f64,
     },
+    /// Friction rises so steeply with the slip speed that the explicit step cannot follow it.
+    #[error(
+        "{field}: the friction coefficient rises by {slope_s_m:.3} per m/s of slip, and a time step of {time_step_s:.3e} s carries \
+         at most {most_s_m:.3} under the mean pressure of this load; give a flatter curve, a smaller load or a smaller time step"
+    )]
+    RiseTooSteep {
+        /// The field of the rise.
+        field: String,
+        /// Its slope \[s/m\].
+        slope_s_m: f64,
+        /// The time step \[s\].
+        time_step_s: f64,
+        /// The steepest one that is allowed \[s/m\].
+        most_s_m: f64,
+    },
     /// The run ended, but a figure overflowed.
     #[error(
         "the run ended, but {figure} is not finite: look for extreme material, load or friction values in this job"
@@ -53,6 +68,30 @@ pub enum JobError {
     /// The observer asked to stop.
     #[error("interrupted")]
     Interrupted,
+}
+
+/// Largest share of a slip speed by which friction may change it in a step at a node with the mean normal force: μ′ N Δt over the node's
+/// mass. The law takes the speed of the step before, so that a node with a share of 2 or more goes from stick to slip in every step,
+/// and nodes where the pressure has a peak carry several times the mean force.
+const LARGEST_SHARE: f64 = 0.5;
+
+/// Checks the time step of a job: number of steps of its run.
+///
+/// # Errors
+/// If there are too many, or if a step cannot follow the job's friction law.
+pub(super) fn check_step(spec: &JobSpec, time_step_s: f64) -> Result<u64, JobError> {
+    if let Some(rise) = spec.scene.contact.steepest_rise().filter(|_| spec.has_run()) {
+        let pin = &spec.scene.pin;
+        // A node at the base has half the mass of an element above its part of the base.
+        let area_mass_kg_m2 = 0.5 * pin.density_kg_m3 * pin.element_edges_m()[2];
+        let pressure_pa = spec.scene.load.force_n / pin.base_area_m2();
+        let most_s_m = LARGEST_SHARE * area_mass_kg_m2 / (pressure_pa * time_step_s);
+        if rise.slope_s_m > most_s_m {
+            let Rise { field, slope_s_m } = rise;
+            return Err(JobError::RiseTooSteep { field, slope_s_m, time_step_s, most_s_m });
+        }
+    }
+    step_count(spec.limit_of_run_s(), time_step_s)
 }
 
 /// Number of steps of a run. Buffers have this size and loops this length, so it has an upper limit.

@@ -1,7 +1,7 @@
 //! One job from its specification to its record.
 
 use super::batch::{Prepared, prepared};
-use super::error::{JobError, step_count};
+use super::error::{JobError, check_step};
 use super::lanes::{Moment, one_lane};
 use super::record::JobRecord;
 use super::stability::{Structures, Verdict, judge};
@@ -47,7 +47,7 @@ pub fn solve(spec: &JobSpec, observer: &mut dyn JobObserver) -> Result<JobRecord
         return Err(JobError::NoParentMotion { parent: parent.to_owned() });
     }
     let mut lanes = one_lane(model, spec.numerics.precision);
-    step_count(spec.limit_of_run_s(), lanes.model().time_step_s())?;
+    check_step(spec, lanes.model().time_step_s())?;
     let structures = Structures::default();
     let beginning = match prepared(spec, &structures, &mut |spent_s| observer.progress(spent_s))? {
         Prepared::GoesOn(ready) => ready.beginning,

@@ -2,7 +2,7 @@
 
 use super::above_band::AboveBand;
 use super::drive::drive;
-use super::error::{JobError, step_count};
+use super::error::{JobError, check_step};
 use super::lane::elastic_disk;
 use super::mode::ComplexMode;
 use super::nested::Beginning;
@@ -104,7 +104,7 @@ pub fn judge(
     structures: &Structures,
 ) -> Result<Verdict, JobError> {
     // A job is refused for what it asks, not for what its eigenvalues say.
-    step_count(spec.limit_of_run_s(), model.time_step_s())?;
+    check_step(spec, model.time_step_s())?;
     if beginning.motion.is_some() {
         return Ok(Verdict::Undecided(None));
     }

@@ -1,6 +1,6 @@
 //! What jobs take, known before their first step: nodes, time step, memory, and when they are likely to end.
 
-use super::error::{JobError, step_count};
+use super::error::{JobError, check_step, step_count};
 use crate::solver::Model;
 use crate::solver::scheme;
 use crate::spec::{DiskKind, JobSpec, Precision, StabilityMethod, elasticity};
@@ -133,6 +133,14 @@ impl Workload {
     /// If a run may not have so many steps.
     pub fn steps(&self, simulated_s: f64) -> Result<u64, JobError> {
         step_count(simulated_s, self.time_step_s)
+    }
+
+    /// Number of steps of a job of these sizes.
+    ///
+    /// # Errors
+    /// If there are too many, or if a step cannot follow the job's friction law.
+    pub fn steps_of(&self, spec: &JobSpec) -> Result<u64, JobError> {
+        check_step(spec, self.time_step_s)
     }
 
     /// Cost of a run of `simulated_s` seconds: steps times nodes, in nodes of the pin in double precision.

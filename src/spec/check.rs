@@ -61,15 +61,6 @@ impl Violations {
         }
     }
 
-    /// Records that `field` is absent, and for what it is needed.
-    ///
-    /// # Panics
-    /// If the field has no limit.
-    pub(super) fn add_absent(&mut self, field: &str, need: impl fmt::Display) {
-        let limit = Limit::of(field).unwrap_or_else(|| panic!("{field} has no limit"));
-        self.add(field, "absent", format!("{} {need}", limit.expected(0.0)));
-    }
-
     /// Records a violation if `value` exceeds the upper end of [`MAGNITUDES`].
     pub(super) fn limit_magnitude(&mut self, field: &str, value: f64) {
         let highest = *MAGNITUDES.end();

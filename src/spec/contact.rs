@@ -1,6 +1,8 @@
 //! Contact and friction between pin and disk.
 
 use super::check::Violations;
+use super::limit::Limit;
+use super::mu_of_speed::MuOfSpeed;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::{IntoStaticStr, VariantArray};
@@ -33,6 +35,8 @@ pub enum FrictionLaw {
     Regularised,
     /// Approaches μN within a slip of `length_m`.
     PrakashClifton,
+    /// The coefficient of `mu_of_speed` at v, times N; in proportion to μ, which is that of the last speed.
+    Table,
 }
 
 /// What friction in a step uses of the step before.
@@ -71,6 +75,7 @@ impl FrictionLaw {
             Self::Exponential => about(&["mu_static", "speed_m_s", "slope_s_m"], Memory::Slip, false, false),
             Self::Regularised => about(&["speed_m_s"], Memory::None, false, true),
             Self::PrakashClifton => about(&["length_m"], Memory::Limit, true, false),
+            Self::Table => about(&["mu_of_speed"], Memory::Slip, false, false),
         }
     }
 
@@ -115,8 +120,10 @@ impl FrictionLaw {
 pub struct Coefficient {
     /// The field of a contact.
     pub name: &'static str,
-    /// Its path from the root of a job, by which its [limit](super::Limit) is found.
+    /// Its path from the root of a job.
     pub field: &'static str,
+    /// The path of one of its numbers, by which their [limit](super::Limit) is found.
+    number: &'static str,
     /// Whether a law that uses it cannot do without it.
     is_needed: bool,
     /// Whether it is a pure number, without a unit.
@@ -127,12 +134,22 @@ pub struct Coefficient {
 
 /// The coefficients of friction that not every law uses.
 #[rustfmt::skip]
-pub static COEFFICIENTS: [Coefficient; 4] = [
-    Coefficient { name: "mu_static", field: "scene.contact.mu_static", is_needed: true, is_ratio: true, values: |contact| contact.mu_static.as_slice() },
-    Coefficient { name: "speed_m_s", field: "scene.contact.speed_m_s", is_needed: true, is_ratio: false, values: |contact| contact.speed_m_s.as_slice() },
-    Coefficient { name: "slope_s_m", field: "scene.contact.slope_s_m", is_needed: false, is_ratio: false, values: |contact| contact.slope_s_m.as_slice() },
-    Coefficient { name: "length_m", field: "scene.contact.length_m", is_needed: true, is_ratio: false, values: |contact| contact.length_m.as_slice() },
+pub static COEFFICIENTS: [Coefficient; 5] = [
+    Coefficient { name: "mu_static", field: "scene.contact.mu_static", number: "scene.contact.mu_static", is_needed: true, is_ratio: true, values: |contact| contact.mu_static.as_slice() },
+    Coefficient { name: "speed_m_s", field: "scene.contact.speed_m_s", number: "scene.contact.speed_m_s", is_needed: true, is_ratio: false, values: |contact| contact.speed_m_s.as_slice() },
+    Coefficient { name: "slope_s_m", field: "scene.contact.slope_s_m", number: "scene.contact.slope_s_m", is_needed: false, is_ratio: false, values: |contact| contact.slope_s_m.as_slice() },
+    Coefficient { name: "length_m", field: "scene.contact.length_m", number: "scene.contact.length_m", is_needed: true, is_ratio: false, values: |contact| contact.length_m.as_slice() },
+    Coefficient { name: "mu_of_speed", field: "scene.contact.mu_of_speed", number: "scene.contact.mu_of_speed[][]", is_needed: true, is_ratio: false, values: |contact| contact.mu_of_speed.0.as_flattened() },
 ];
+
+/// A rise of friction over the slip speed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rise {
+    /// The field of a job that has it.
+    pub field: String,
+    /// Its slope \[s/m\].
+    pub slope_s_m: f64,
+}
 
 /// Unilateral contact with friction, the same at every node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -154,6 +171,10 @@ pub struct Contact {
     /// Slip (m) in which the law `prakash_clifton` follows the normal force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub length_m: Option<f64>,
+    /// Friction coefficient over the slip speed, for the law `table`. `mu` is the coefficient of the last speed: another `mu` scales all of
+    /// them, and without a `mu` in the study they are as they are.
+    #[serde(skip_serializing_if = "MuOfSpeed::is_empty")]
+    pub mu_of_speed: MuOfSpeed,
     /// Stiffness (Pa/m) of a layer between pin and disk: pressure over depth. Absent: rigid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness_pa_m: Option<f64>,
@@ -174,6 +195,7 @@ impl Default for Contact {
             speed_m_s: None,
             slope_s_m: None,
             length_m: None,
+            mu_of_speed: MuOfSpeed::default(),
             stiffness_pa_m: None,
             stiffness_exponent: None,
             stiffness_pressure_pa: None,
@@ -191,7 +213,7 @@ impl Contact {
 
     /// The part that all jobs of a batch share: the law and the layer, without the coefficients of friction.
     pub(super) fn shared_part(&self) -> Self {
-        let Self { law, stiffness_pa_m, stiffness_exponent, stiffness_pressure_pa, .. } = *self;
+        let Self { law, stiffness_pa_m, stiffness_exponent, stiffness_pressure_pa, .. } = self.clone();
         Self { law, stiffness_pa_m, stiffness_exponent, stiffness_pressure_pa, ..Self::default() }
     }
 
@@ -208,10 +230,45 @@ impl Contact {
             speed_m_s: self.speed_m_s.filter(|_| used("speed_m_s")),
             slope_s_m: self.slope_s_m.filter(|slope| used("slope_s_m") && *slope != 0.0),
             length_m: self.length_m.filter(|_| used("length_m")),
+            mu_of_speed: if used("mu_of_speed") { self.mu_of_speed.clone() } else { MuOfSpeed::default() },
             stiffness_pa_m: self.stiffness_pa_m,
             stiffness_exponent: exponent,
             stiffness_pressure_pa: self.stiffness_pressure_pa.filter(|_| exponent.is_some()),
         }
+    }
+
+    /// The steepest rise of friction over the slip speed that a step takes from the step before; `None` if there is none.
+    pub fn steepest_rise(&self) -> Option<Rise> {
+        let (field, slope_s_m) = match self.law {
+            FrictionLaw::Exponential => {
+                let viscous = self.slope_s_m.unwrap_or(0.0);
+                let at_rest = viscous + (self.mu - self.mu_static?) / self.speed_m_s?;
+                if at_rest > viscous {
+                    ("scene.contact.speed_m_s".to_owned(), at_rest)
+                } else {
+                    ("scene.contact.slope_s_m".to_owned(), viscous)
+                }
+            }
+            FrictionLaw::Table => {
+                let (pair, slope_s_m) = self.mu_of_speed.steepest_rise()?;
+                (format!("scene.contact.mu_of_speed[{pair}]"), self.table_scale() * slope_s_m)
+            }
+            FrictionLaw::Coulomb
+            | FrictionLaw::StaticKinetic
+            | FrictionLaw::Regularised
+            | FrictionLaw::PrakashClifton => return None,
+        };
+        (slope_s_m > 0.0).then_some(Rise { field, slope_s_m })
+    }
+
+    /// The coefficient of fast slip that the table of the law has itself; `None` if the law has no table.
+    pub fn table_mu(&self) -> Option<f64> {
+        self.mu_of_speed.fast().filter(|_| self.law == FrictionLaw::Table)
+    }
+
+    /// What `mu` makes of the values of the table; NaN without a table.
+    fn table_scale(&self) -> f64 {
+        self.mu / self.mu_of_speed.fast().unwrap_or(f64::NAN)
     }
 
     /// How steeply \[s/m\] friction over the normal force rises at least with the speed \[m/s\] of slip, which damps the base.
@@ -222,6 +279,7 @@ impl Contact {
                 self.mu * v0 / ((speed_m_s + v0) * (speed_m_s + v0))
             }
             FrictionLaw::Exponential => self.slope_s_m.unwrap_or(0.0),
+            FrictionLaw::Table => (self.table_scale() * self.mu_of_speed.at(speed_m_s)[1]).max(0.0),
             FrictionLaw::Coulomb | FrictionLaw::StaticKinetic | FrictionLaw::PrakashClifton => 0.0,
         }
     }
@@ -232,12 +290,16 @@ impl Contact {
         for coefficient in &COEFFICIENTS {
             let values = (coefficient.values)(self);
             for value in values {
-                found.within(coefficient.field, *value);
+                found.within(coefficient.number, *value);
             }
             if values.is_empty() && coefficient.is_needed && self.law.uses(coefficient) {
-                found.add_absent(coefficient.field, format!("for the friction law {}", self.law.name()));
+                let right =
+                    Limit::of(coefficient.number).map_or_else(String::new, |limit| limit.expected(0.0));
+                let law = self.law.name();
+                found.add(coefficient.field, "absent", format!("{right} for the friction law {law}"));
             }
         }
+        self.mu_of_speed.check(found);
         self.check_layer(found);
     }
 

@@ -120,6 +120,28 @@ impl Holder {
         })
     }
 
+    /// Gives each spring the damper of this share of critical damping, with a rigid pin of this mass and of this height \[m\] below the axes of
+    /// rotation. Returns whether there is a spring.
+    pub fn damp(&mut self, ratio: f64, pin_kg: f64, height_m: f64) -> bool {
+        let damper = |way: Option<HolderDirection>, pin: f64| {
+            let way = way.filter(|way| way.stiffness_n_m > 0.0)?;
+            Some(2.0 * ratio * (way.stiffness_n_m * (way.mass_kg + pin)).sqrt())
+        };
+        let [x, y, z] = self.directions().map(|way| damper(way, pin_kg));
+        let rod = pin_kg * height_m * height_m / 3.0;
+        let [about_x, about_y] = self.rotations().map(|way| damper(way, rod));
+        for (field, damper) in [
+            (&mut self.damping_x_n_s_m, x),
+            (&mut self.damping_y_n_s_m, y),
+            (&mut self.damping_z_n_s_m, z),
+            (&mut self.rotational_damping_x_nm_s_rad, about_x),
+            (&mut self.rotational_damping_y_nm_s_rad, about_y),
+        ] {
+            *field = damper.or(*field);
+        }
+        [x, y, z, about_x, about_y].iter().any(Option::is_some)
+    }
+
     /// The longest √(mass over stiffness) \[s\] of its springs with a pin of this mass, and of this height \[m\] below the axes of
     /// rotation; 0 without springs.
     pub(super) fn vibration_time_s(&self, pin_kg: f64, height_m: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! Damping as people know it: a ratio at a frequency, or the β₂ of a scheme at its time step.
 
 use super::json::present;
-use crate::spec::{FieldError, Limit, Numerics};
+use crate::spec::{FieldError, JobSpec, Limit};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -32,7 +32,30 @@ pub(super) struct Damping {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "f64")]
     pub at_time_step_s: Option<f64>,
+    /// Damping ratio ζ of the holder's springs, 0 ≤ ζ < 1, beside any damping of the pin: each spring has the damper 2ζ√(k m), where m is the
+    /// mass, or the moment of inertia, of the holder with a rigid pin.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(with = "f64")]
+    pub holder_ratio: Option<f64>,
 }
+
+/// The fields that give `β_R`.
+pub(super) const OF_PIN: [&str; 5] = [
+    "damping.ratio",
+    "damping.loss_factor",
+    "damping.frequency_hz",
+    "damping.beta2",
+    "damping.at_time_step_s",
+];
+
+/// The parameters that give the holder's dampers themselves.
+pub(super) const DAMPERS: [&str; 5] = [
+    "holder_damping_x_n_s_m",
+    "holder_damping_y_n_s_m",
+    "holder_damping_z_n_s_m",
+    "holder_rotational_damping_x_nm_s_rad",
+    "holder_rotational_damping_y_nm_s_rad",
+];
 
 /// A refused value of a field.
 fn refused(field: &str, value: f64, expected: impl Into<String>) -> FieldError {
@@ -40,24 +63,33 @@ fn refused(field: &str, value: f64, expected: impl Into<String>) -> FieldError {
 }
 
 impl Damping {
-    /// Sets `β_R` \[s\]: ζ / (π f), or (β₂ − ½) Δt.
+    /// Sets what is damped: the pin and the holder.
     ///
     /// # Errors
-    /// If a value is missing or out of its range, or if `gives_beta_r` says that `β_R` is given as well. Then nothing is
-    /// set.
-    pub(super) fn fill(self, numerics: &mut Numerics, gives_beta_r: bool) -> Result<(), FieldError> {
+    /// If a value is missing or out of its range, or if `gives` says that what it sets is given by name as well. Then nothing is set.
+    pub(super) fn fill(self, spec: &mut JobSpec, gives: impl Fn(&str) -> bool) -> Result<(), FieldError> {
+        let damps_pin = self != Self { holder_ratio: self.holder_ratio, ..Self::default() };
+        let beta_r_s = if damps_pin || self.holder_ratio.is_none() {
+            self.beta_r_s(spec.numerics.beta_r_s, gives("beta_r_s"))?
+        } else {
+            spec.numerics.beta_r_s
+        };
+        if let Some(ratio) = self.holder_ratio {
+            damp_holder(ratio, spec, gives)?;
+        }
+        spec.numerics.beta_r_s = beta_r_s;
+        Ok(())
+    }
+
+    /// `β_R` \[s\]: ζ / (π f), or (β₂ − ½) Δt.
+    fn beta_r_s(self, given_s: f64, gives_beta_r: bool) -> Result<f64, FieldError> {
         if gives_beta_r {
             let expected = "either this or damping, not both: each gives β_R";
-            return Err(refused("numerics.beta_r_s", numerics.beta_r_s, expected));
+            return Err(refused("numerics.beta_r_s", given_s, expected));
         }
-        let given = [
-            ("damping.ratio", self.ratio),
-            ("damping.loss_factor", self.loss_factor),
-            ("damping.frequency_hz", self.frequency_hz),
-            ("damping.beta2", self.beta2),
-            ("damping.at_time_step_s", self.at_time_step_s),
-        ];
-        let given: Vec<_> = given.into_iter().filter_map(|(field, value)| Some((field, value?))).collect();
+        let values = [self.ratio, self.loss_factor, self.frequency_hz, self.beta2, self.at_time_step_s];
+        let given: Vec<_> =
+            OF_PIN.into_iter().zip(values).filter_map(|(field, value)| Some((field, value?))).collect();
         for &(field, value) in &given {
             if let Some(limit) = Limit::of(field).filter(|limit| !limit.holds(value)) {
                 return Err(refused(field, value, limit.expected(value)));
@@ -65,7 +97,8 @@ impl Damping {
         }
         let Some(&(first, value)) = given.first() else {
             let expected =
-                "a ratio or a loss_factor, and frequency_hz; or beta2 and at_time_step_s".to_owned();
+                "a ratio or a loss_factor, and frequency_hz; or beta2 and at_time_step_s; or holder_ratio"
+                    .to_owned();
             return Err(FieldError { field: "damping".to_owned(), value: "{}".to_owned(), expected });
         };
         let expected = match (
@@ -80,12 +113,10 @@ impl Damping {
             }
             (Some(_), Some(frequency_hz), None, None) => {
                 let ratio = self.ratio.or(self.loss_factor.map(|loss| loss / 2.0)).unwrap_or_default();
-                numerics.beta_r_s = ratio / (PI * frequency_hz);
-                return Ok(());
+                return Ok(ratio / (PI * frequency_hz));
             }
             (None, None, Some(beta2), Some(time_step_s)) => {
-                numerics.beta_r_s = (beta2 - 0.5) * time_step_s;
-                return Ok(());
+                return Ok((beta2 - 0.5) * time_step_s);
             }
             (Some(_), None, None, None) => "the frequency too at which it holds: damping.frequency_hz",
             (None, Some(_), None, None) => "a damping ratio or a loss factor too: ratio or loss_factor",
@@ -97,4 +128,24 @@ impl Damping {
         };
         Err(refused(first, value, expected))
     }
+}
+
+/// Gives each spring of the holder a damper.
+fn damp_holder(ratio: f64, spec: &mut JobSpec, gives: impl Fn(&str) -> bool) -> Result<(), FieldError> {
+    const FIELD: &str = "damping.holder_ratio";
+    if let Some(limit) = Limit::of(FIELD).filter(|limit| !limit.holds(ratio)) {
+        return Err(refused(FIELD, ratio, limit.expected(ratio)));
+    }
+    if let Some(name) = DAMPERS.into_iter().find(|name| gives(name)) {
+        let expected = format!("either this or {name}, not both: each gives a damper of the holder");
+        return Err(refused(FIELD, ratio, expected));
+    }
+    let pin = &spec.scene.pin;
+    let height_m = pin.extent_m()[2];
+    let pin_kg = pin.density_kg_m3 * pin.base_area_m2() * height_m;
+    if !spec.scene.holder.damp(ratio, pin_kg, height_m) {
+        let expected = "absent without a spring of the holder, such as scene.holder.stiffness_y_n_m";
+        return Err(refused(FIELD, ratio, expected));
+    }
+    Ok(())
 }

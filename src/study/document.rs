@@ -6,12 +6,13 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::Value;
 
 /// The top-level fields in the order in which a document is written; others come before the grid.
-const ORDER: [&str; 12] = [
+const ORDER: [&str; 13] = [
     "$schema",
     "name",
     "description",
     "preset",
     "accuracy",
+    "sliding_speed_m_s",
     "damping",
     "scene",
     "numerics",

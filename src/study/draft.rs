@@ -6,15 +6,25 @@ use super::file::StudyFile;
 use super::parameter::{PARAMETERS, Parameter};
 use super::preset::Preset;
 use super::time_defaults;
-use crate::spec::{FieldError, JobSpec};
+use crate::spec::{FieldError, FrictionLaw, JobSpec, Limit};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::borrow::Cow;
 use std::collections::HashSet;
+use std::f64::consts::TAU;
 
 /// The parts of a study that describe a job.
-pub(super) const PARTS: [&str; 8] =
-    ["preset", "damping", "scene", "numerics", "run", "detection", "stability", "accuracy"];
+pub(super) const PARTS: [&str; 9] = [
+    "preset",
+    "damping",
+    "sliding_speed_m_s",
+    "scene",
+    "numerics",
+    "run",
+    "detection",
+    "stability",
+    "accuracy",
+];
 
 /// A job before it has all its values: everything that a study says about it, before presets, damping and the defaults
 /// that depend on other values give the rest.
@@ -73,21 +83,39 @@ impl Draft {
         let mut violations = Vec::new();
         if !self.ties.is_empty() {
             // What a preset or a default sets later is not known here.
+            let has_table =
+                tied.pointer("/scene/contact/law").is_some_and(|law| law == FrictionLaw::Table.name());
             let is_known = |own: &Parameter| {
-                self.given.contains(own.name)
-                    || !is_set_by_presets(own) && !time_defaults::FIELDS.contains(&own.name)
+                let is_set_later = is_set_by_presets(own)
+                    || time_defaults::FIELDS.contains(&own.name)
+                    || has_table && own.name == "mu";
+                self.given.contains(own.name) || !is_set_later
             };
             violations.extend(self.ties.apply(tied.to_mut(), is_known).err().into_iter().flatten());
         }
-        let StudyFile { preset, damping, scene, numerics, run, detection, stability, accuracy, .. } =
-            decode(&tied);
+        let StudyFile {
+            preset,
+            damping,
+            sliding_speed_m_s,
+            scene,
+            numerics,
+            run,
+            detection,
+            stability,
+            accuracy,
+            ..
+        } = decode(&tied);
         let mut spec = JobSpec { scene, numerics, run, detection, stability, accuracy, continuation: None };
         let gives = |name: &str| self.given.contains(name);
+        if let Some(speed_m_s) = sliding_speed_m_s {
+            let rpm = rpm_of_sliding(speed_m_s, spec.scene.disk.track_radius_m, gives("omega_rpm"));
+            violations.extend(rpm.map(|rpm| spec.scene.disk.omega_rpm = rpm).err());
+        }
         if let Some(preset) = preset {
             preset.fill(&mut spec, gives);
         }
         if let Some(damping) = damping {
-            violations.extend(damping.fill(&mut spec.numerics, gives("beta_r_s")).err());
+            violations.extend(damping.fill(&mut spec, gives).err());
         }
         if spec.accuracy.is_some() {
             let finest = Preset::finest_elements(&spec.scene.pin, &spec.scene.clamp);
@@ -101,10 +129,29 @@ impl Draft {
         if let Some(preset) = preset.or(spec.accuracy.map(|_| Preset::Standard)) {
             preset.choose_way(&mut spec, gives);
         }
+        // A table that nobody scales has its own coefficient of fast slip.
+        if let Some(own) = spec.scene.contact.table_mu().filter(|_| !gives("mu")) {
+            spec.scene.contact.mu = own;
+        }
         time_defaults::fill(&mut spec, gives);
         spec.scene.take_largest_of_program(["omega_rpm", "load_n"].map(gives));
         violations.extend(spec.check().err().into_iter().flat_map(|found| found.0));
         Resolved { spec, violations }
+    }
+}
+
+/// The speed \[rpm\] of a disk that slides at this speed \[m/s\] under the centre of the pin.
+fn rpm_of_sliding(speed_m_s: f64, track_radius_m: f64, gives_omega: bool) -> Result<f64, FieldError> {
+    const FIELD: &str = "sliding_speed_m_s";
+    let refused = |expected: String| {
+        Err(FieldError { field: FIELD.to_owned(), value: speed_m_s.to_string(), expected })
+    };
+    if gives_omega {
+        return refused("either this or omega_rpm, not both: each gives the speed of the disk".to_owned());
+    }
+    match Limit::of(FIELD).filter(|limit| !limit.holds(speed_m_s)) {
+        Some(limit) => refused(limit.expected(speed_m_s)),
+        None => Ok(speed_m_s / track_radius_m * 60.0 / TAU),
     }
 }
 

@@ -35,6 +35,10 @@ pub(super) struct StudyFile {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "Preset")]
     pub preset: Option<Preset>,
+    /// Sliding speed (m/s) of the disk under the centre of the pin, instead of `scene.disk.omega_rpm`.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(with = "f64")]
+    pub sliding_speed_m_s: Option<f64>,
     /// Damping as it is measured, instead of `numerics.beta_r_s`.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "Damping")]

@@ -1,6 +1,7 @@
 //! Where the value of a parameter comes from.
 
 use super::covered::is_set_by_presets;
+use super::damping::{DAMPERS, OF_PIN};
 use super::definition::Study;
 use super::parameter::Parameter;
 
@@ -42,7 +43,9 @@ impl Study {
             Origin::Grid
         } else if self.source.gives(&field)
             || self.source.gives(list)
-            || parameter.name == "beta_r_s" && self.source.gives("damping")
+            || parameter.name == "beta_r_s" && OF_PIN.iter().any(|field| self.source.gives(field))
+            || parameter.name == "omega_rpm" && self.source.gives("sliding_speed_m_s")
+            || DAMPERS.contains(&parameter.name) && self.source.gives("damping.holder_ratio")
         {
             Origin::Study
         } else if is_preset_given && is_set_by_presets(parameter) {

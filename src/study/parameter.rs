@@ -1,5 +1,6 @@
 //! The registry of parameters: what a grid or an override can set, by short name.
 
+use super::damping;
 use super::error::Problem;
 use super::json::number_hint;
 use super::plausible::{DENSITY, FRICTION, LENGTH, MODULUS, Plausible};
@@ -35,7 +36,7 @@ pub struct Parameter {
     /// Short name, unique.
     pub name: &'static str,
     /// JSON pointer into a study, and so into a [`JobSpec`](crate::spec::JobSpec): a job has every field that a parameter
-    /// sets, except for `preset` and `damping`, which stand for values of other fields.
+    /// sets, except for `preset`, `damping` and `sliding_speed_m_s`, which stand for values of other fields.
     pub pointer: &'static str,
     /// What it is.
     pub meaning: &'static str,
@@ -75,6 +76,7 @@ const DISK_TIME_STEP: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskTim
 #[rustfmt::skip]
 pub static PARAMETERS: &[Parameter] = &[
     parameter("omega_rpm", "/scene/disk/omega_rpm", Kind::Number, "rotation speed of the disk").symbol("ω"),
+    parameter("sliding_speed_m_s", "/sliding_speed_m_s", Kind::Number, "sliding speed under the pin's centre, instead of omega_rpm").symbol("v"),
     parameter("mu", "/scene/contact/mu", Kind::Number, "local (Coulomb) friction coefficient").symbol("μ").plausible(&FRICTION),
     parameter("load_n", "/scene/load/force_n", Kind::Number, "total normal load").symbol("F"),
     parameter("friction_law", "/scene/contact/law", FRICTION_LAW, "friction law"),
@@ -151,6 +153,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("loss_factor", "/damping/loss_factor", Kind::Number, "loss factor η = 2ζ at damping_frequency_hz, instead of beta_r_s"),
     parameter("damping_frequency_hz", "/damping/frequency_hz", Kind::Number, "frequency at which damping_ratio or loss_factor holds"),
     parameter("damping_beta2", "/damping/beta2", Kind::Number, "β₂ of a scheme that has the job's damping at damping_at_time_step_s, instead of beta_r_s"),
+    parameter("holder_damping_ratio", "/damping/holder_ratio", Kind::Number, "damping ratio ζ of the holder's springs, instead of its dampers"),
     parameter("damping_at_time_step_s", "/damping/at_time_step_s", Kind::Number, "time step at which the scheme of damping_beta2 has the job's damping"),
     parameter("safety_factor", "/numerics/safety_factor", Kind::Number, "time step as a fraction of the stability limit"),
     parameter("time_step_s", "/numerics/time_step_s", Kind::Number, "time step, instead of safety_factor").symbol("Δt"),
@@ -289,6 +292,10 @@ impl Parameter {
                 "damping_at_time_step_s",
             ],
             "safety_factor" => &["time_step_s"],
+            "omega_rpm" => &["sliding_speed_m_s"],
+            "sliding_speed_m_s" => &["omega_rpm"],
+            "holder_damping_ratio" => &damping::DAMPERS,
+            own if damping::DAMPERS.contains(&own) => &["holder_damping_ratio"],
             _ => &[],
         };
         names.iter().map(|name| Self::named(name))

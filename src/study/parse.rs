@@ -4,18 +4,19 @@ use super::axis::Axis;
 use super::calibration;
 use super::change::{Basins, Changes, Forms};
 use super::conditions::Conditions;
+use super::damping::OF_PIN;
 use super::definition::Study;
 use super::derive::Ties;
 use super::error::{Problem, StudyError};
 use super::file::StudyFile;
 use super::grid::Grid;
 use super::growth::{Continue, Growth};
-use super::height_file;
 use super::json::{Decoded, decode_all};
 use super::limits::MAX_JOBS;
 use super::locate::join;
 use super::mesh_file;
 use super::name::{EXPECTED, is_study_name, refused_name, similar_name};
+use super::number_file;
 use super::outline::Outline;
 use super::parameter::{Parameter, unknown_help};
 use super::plausibility::refused_strain;
@@ -82,7 +83,9 @@ impl Study {
         let is_meant = |varied: &'static Parameter| {
             varied == beta_r_s || varied.displaces().any(|other| other == beta_r_s)
         };
-        self.source.gives("damping") || self.source.gives(&beta_r_s.field()) || self.varied().any(is_meant)
+        OF_PIN.iter().any(|field| self.source.gives(field))
+            || self.source.gives(&beta_r_s.field())
+            || self.varied().any(is_meant)
     }
 
     fn read(
@@ -96,7 +99,12 @@ impl Study {
         refuse(source.repeated_keys())?;
         refuse(long_lists(&value, &source))?;
         refuse(with_unit::in_study(&mut value, &source))?;
-        for with_file in [height_file::with_heights, mesh_file::with_mesh, samples::with_points] {
+        for with_file in [
+            number_file::with_heights,
+            number_file::with_friction,
+            mesh_file::with_mesh,
+            samples::with_points,
+        ] {
             if reads_files && let Some(text) = with_file(&value, &source)? {
                 let (with_content, read) = SourceText::read(&text, source_name)?;
                 (value, source) = (with_content, read.at_places_of(&source));

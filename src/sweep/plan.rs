@@ -307,7 +307,7 @@ fn preflight(
         })
         .collect();
     let is_refused = |(job, &number): (&Job, &usize)| match &workloads[number] {
-        Ok(workload) => workload.steps(job.spec.limit_of_run_s()).is_err(),
+        Ok(workload) => workload.steps_of(&job.spec).is_err(),
         Err(_) => true,
     };
     let refused: Vec<bool> = jobs.iter().zip(&workload_of).map(is_refused).collect();
@@ -316,7 +316,7 @@ fn preflight(
     };
     let job = &jobs[first];
     let workload = workloads.swap_remove(workload_of[first]);
-    let Err(reason) = workload.and_then(|workload| workload.steps(job.spec.limit_of_run_s())) else {
+    let Err(reason) = workload.and_then(|workload| workload.steps_of(&job.spec)) else {
         unreachable!("the job is refused");
     };
     let point: Vec<String> =

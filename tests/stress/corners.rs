@@ -37,6 +37,7 @@ pub const CORNERS: [Corner; 44] = [
     ("a holder that moves", |s| !s.scene.holder.is_ideal()),
     ("a static coefficient", |s| s.scene.contact.law == FrictionLaw::StaticKinetic),
     ("an exponential law", |s| s.scene.contact.law == FrictionLaw::Exponential),
+    ("a law with a table", |s| s.scene.contact.law == FrictionLaw::Table),
     ("a regularised law", |s| s.scene.contact.law == FrictionLaw::Regularised),
     ("a law with a state", |s| s.scene.contact.law == FrictionLaw::PrakashClifton),
     ("a base with gaps", |s| !s.scene.pin.base.is_flat()),

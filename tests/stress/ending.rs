@@ -100,6 +100,7 @@ fn failure(spec: &JobSpec, error: &JobError, steps: u64) -> Result<Ending, Strin
         JobError::Solver(SolverError::ClampOffMesh { .. }) => "clamp off the mesh",
         JobError::Solver(SolverError::BeyondSinglePrecision { .. }) => "beyond single precision",
         JobError::TooManySteps { .. } => "too many steps",
+        JobError::RiseTooSteep { .. } => "friction that rises too steeply",
         JobError::Solver(SolverError::Diverged { step, node, .. }) => {
             let nodes: usize = spec.scene.pin.elements.iter().map(|n| n + 1).product();
             require(*step == steps && *node < nodes, || format!("step {step} of {steps}, node {node}"))?;

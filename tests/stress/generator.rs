@@ -8,8 +8,8 @@ use crate::random::Random;
 use strum::VariantArray;
 use tribosweep_mechanics::solver::Model;
 use tribosweep_mechanics::spec::{
-    Base, ClampSide, FrictionLaw, HeightMap, JobSpec, Precision, Region, Roughness, Scene, Shape,
-    StabilityMethod, Table, TopFace,
+    Base, ClampSide, FrictionLaw, HeightMap, JobSpec, MOST_PAIRS, MuOfSpeed, Precision, Region, Roughness,
+    Scene, Shape, StabilityMethod, Table, TopFace,
 };
 
 /// Largest number of nodes × steps of a case. With it 10 000 cases take minutes.
@@ -101,6 +101,15 @@ fn law(random: &mut Random, spec: &mut JobSpec) {
     contact.slope_s_m =
         Some(if random.chance(0.5) { 0.0 } else { random.log_between(1.0e-3, 10.0) / speed_m_s });
     contact.length_m = Some(random.log_between(1.0e-12, 1.0));
+    if contact.law == FrictionLaw::Table {
+        let mut at_m_s = 0.0;
+        let pairs = (0..random.whole(2, MOST_PAIRS)).map(|_| {
+            let pair = [at_m_s, random.between(1.0e-3, 2.0)];
+            at_m_s += speed_m_s * random.log_between(1.0e-3, 1.0e3);
+            pair
+        });
+        contact.mu_of_speed = MuOfSpeed(pairs.collect());
+    }
 }
 
 /// A base that is not flat, with gaps far below and above what the load closes.

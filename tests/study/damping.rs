@@ -163,3 +163,68 @@ fn contradictions_and_gaps_are_refused() {
     let expected = ["1:92: damping.ratio = 1: expected a fraction", "set by grid.damping_ratio[1]"];
     assert_contains(&refusal(grid), &expected);
 }
+
+/// Protects: a ratio of the holder is that of a rigid pin on each of its springs, in every job of a grid, and leaves the damping of the pin alone.
+/// 2ζ√(k m) is the textbook's critical damping; the tolerance is a few roundings.
+#[test]
+fn a_ratio_damps_the_springs_of_the_holder() {
+    let study = parse(
+        r#"{ "scene": { "holder": { "mass_kg": 0.05, "stiffness_y_n_m": 2e6, "rotational_stiffness_x_nm_rad": 300, "inertia_x_kg_m2": 1e-5 },
+                        "pin": { "size_m": [0.01, 0.012, 0.02], "density_kg_m3": 1400 } },
+             "damping": { "holder_ratio": 0.03 }, "grid": { "holder_stiffness_y_n_m": [2e6, 8e6] } }"#,
+    );
+    let pin_kg: f64 = 1400.0 * 0.01 * 0.012 * 0.02;
+    let jobs = study.expand("1").unwrap();
+    for (job, stiffness_n_m) in jobs.iter().zip([2.0e6, 8.0e6_f64]) {
+        let holder = &job.spec.scene.holder;
+        let expected = 0.06 * (stiffness_n_m * (0.05 + pin_kg)).sqrt();
+        assert!((holder.damping_y_n_s_m.unwrap() / expected - 1.0).abs() < 1e-14);
+        let about = 0.06 * (300.0 * (1.0e-5 + pin_kg * 0.02 * 0.02 / 3.0)).sqrt();
+        assert!((holder.rotational_damping_x_nm_s_rad.unwrap() / about - 1.0).abs() < 1e-14);
+        assert_eq!((holder.damping_x_n_s_m, holder.rotational_damping_y_nm_s_rad), (None, None));
+        assert_eq!(job.spec.numerics.beta_r_s, tribosweep::spec::JobSpec::default().numerics.beta_r_s);
+    }
+    for (text, expected) in [
+        (
+            r#"{ "damping": { "holder_ratio": 0.03 } }"#,
+            "damping.holder_ratio = 0.03: expected absent without a spring of the holder",
+        ),
+        (
+            r#"{ "damping": { "holder_ratio": 1 } }"#,
+            "damping.holder_ratio = 1: expected a fraction of critical damping",
+        ),
+        (
+            r#"{ "scene": { "holder": { "stiffness_y_n_m": 2e6, "damping_y_n_s_m": 5 } }, "damping": { "holder_ratio": 0.03 } }"#,
+            "damping.holder_ratio = 0.03: expected either this or holder_damping_y_n_s_m, not both",
+        ),
+    ] {
+        assert_contains(&refusal(text), &[expected]);
+    }
+}
+
+/// Protects: a sliding speed is the disk's speed under the pin's centre, v = ωR, in every job of a grid.
+#[test]
+fn a_sliding_speed_gives_omega() {
+    let study = parse(r#"{ "sliding_speed_m_s": 0.3, "grid": { "track_radius_m": [0.03, 0.06] } }"#);
+    for (job, radius_m) in study.expand("1").unwrap().iter().zip([0.03, 0.06]) {
+        let speed_m_s = job.spec.scene.disk.omega_rpm * 2.0 * PI / 60.0 * radius_m;
+        assert!((speed_m_s / 0.3 - 1.0).abs() < 1e-14, "{speed_m_s}");
+    }
+    let varied = parse(r#"{ "grid": { "sliding_speed_m_s": ["0.1 m/s", "200 mm/s"] } }"#);
+    let rates: Vec<f64> =
+        varied.expand("1").unwrap().iter().map(|job| job.spec.scene.disk.omega_rpm).collect();
+    assert!((rates[1] / rates[0] - 2.0).abs() < 1e-14, "{rates:?}");
+    for (text, expected) in [
+        (
+            r#"{ "sliding_speed_m_s": 0.3, "scene": { "disk": { "omega_rpm": 7 } } }"#,
+            "sliding_speed_m_s = 0.3: expected either this or omega_rpm, not both",
+        ),
+        (r#"{ "sliding_speed_m_s": 0 }"#, "sliding_speed_m_s = 0: expected a speed > 0 m/s"),
+        (
+            r#"{ "sliding_speed_m_s": 0.3, "grid": { "omega_rpm": [1, 2] } }"#,
+            "not both: each gives the speed of the disk",
+        ),
+    ] {
+        assert_contains(&refusal(text), &[expected]);
+    }
+}

@@ -4,7 +4,7 @@ use super::parse;
 use serde_json::{Value, json};
 use tribosweep::spec::{
     Accuracy, Base, ClampSide, Contact, DiskKind, FrictionLaw, HeightMap, Holder, JobSpec, MeshFile,
-    Precision, Region, Roughness, Shape, StabilityMethod, Start,
+    MuOfSpeed, Precision, Region, Roughness, Shape, StabilityMethod, Start,
 };
 use tribosweep::study::{PARAMETERS, job_key};
 
@@ -34,6 +34,7 @@ pub fn full() -> JobSpec {
         speed_m_s: Some(0.01),
         slope_s_m: Some(0.1),
         length_m: Some(1.0e-6),
+        mu_of_speed: MuOfSpeed(vec![[0.001, 0.5], [1.0, 0.4]]),
         stiffness_pa_m: Some(1.0e13),
         stiffness_exponent: Some(2.0),
         stiffness_pressure_pa: Some(1.0e6),
@@ -154,8 +155,10 @@ fn every_field_changes_the_key_even_by_one_ulp() {
     let job = serde_json::to_value(full()).unwrap();
     let mut pointers = Vec::new();
     leaves(&job, "", &mut pointers);
-    // A preset and a damping stand for values of other fields.
-    let in_job = |pointer: &str| pointer != "/preset" && !pointer.starts_with("/damping/");
+    // A preset, a damping and a sliding speed stand for values of other fields.
+    let in_job = |pointer: &str| {
+        !["/preset", "/sliding_speed_m_s"].contains(&pointer) && !pointer.starts_with("/damping/")
+    };
     for parameter in PARAMETERS.iter().filter(|parameter| in_job(parameter.pointer)) {
         let is_walked = |pointer: &String| {
             pointer
@@ -198,15 +201,19 @@ fn every_field_changes_the_key_even_by_one_ulp() {
             assert_ne!(block(&changed), block(&full()), "{pointer} of a block");
             continue;
         }
-        // The exponential law of this job does not use the length.
-        if pointer == "/scene/contact/length_m" {
+        // The exponential law of this job uses neither the length nor the table.
+        let user = [
+            ("/scene/contact/length_m", FrictionLaw::PrakashClifton),
+            ("/scene/contact/mu_of_speed/", FrictionLaw::Table),
+        ];
+        if let Some((_, law)) = user.into_iter().find(|(field, _)| pointer.starts_with(field)) {
             assert_eq!(key(&changed), key(&full()), "{pointer}");
-            let with_memory = |spec: &JobSpec| {
+            let with_law = |spec: &JobSpec| {
                 let mut spec = spec.clone();
-                spec.scene.contact.law = FrictionLaw::PrakashClifton;
+                spec.scene.contact.law = law;
                 key(&spec)
             };
-            assert_ne!(with_memory(&changed), with_memory(&full()), "{pointer} of a law that uses it");
+            assert_ne!(with_law(&changed), with_law(&full()), "{pointer} of a law that uses it");
             continue;
         }
         assert_ne!(key(&changed), key(&full()), "{pointer}");

@@ -5,6 +5,7 @@ mod changes;
 mod damping;
 mod derive;
 mod expansion;
+mod friction_table;
 mod height_map;
 mod keys;
 mod mesh_files;

@@ -52,6 +52,7 @@ fn a_complete_job_fits() {
         "description",
         "preset",
         "damping",
+        "sliding_speed_m_s",
         "grid",
         "samples",
         "include",
@@ -245,6 +246,10 @@ fn study_with(limit: &Limit, value: f64) -> Value {
             json!({ "scene": { "program": { "omega_rpm": [[0, 7], [0.01, 7]] } } })
         }
         "scene.program.force_n[][]" => json!({ "scene": { "program": { "force_n": [[0, 7], [0.01, 7]] } } }),
+        "scene.contact.mu_of_speed[][]" => {
+            json!({ "scene": { "contact": { "mu_of_speed": [[0, 0.5], [1, 0.4]] } } })
+        }
+        "damping.holder_ratio" => json!({ "scene": { "holder": { "stiffness_y_n_m": 2e6 } } }),
         "damping.frequency_hz" => json!({ "damping": { "ratio": 0.1 } }),
         field if field.starts_with("damping.") => json!({ "damping": { "frequency_hz": 15000 } }),
         _ => json!({}),

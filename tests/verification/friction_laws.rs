@@ -7,7 +7,7 @@
 //!   mass has the velocity V again. Then the belt carries it over 2Δ. The period is (π + 2φ)/ω + 2Δ/V (den Hartog, *Mechanical
 //!   Vibrations*, 4th ed. 1956, § 7.1).
 //! * **A coefficient μ(v)** acts on a small oscillation about steady sliding like a damper of N μ′(V): the growth rate is
-//!   −N μ′(V)/(2m). For `exponential` μ′(V) = −(μ_s − μ) e^(−V/v₀)/v₀ + s, for `regularised` μ′(V) = μ v₀/(V + v₀)².
+//!   −N μ′(V)/(2m). For `table` between pairs on a line it is the slope of that. For `exponential` μ′(V) = −(μ_s − μ) e^(−V/v₀)/v₀ + s, for `regularised` μ′(V) = μ v₀/(V + v₀)².
 //! * **Prakash and Clifton's law** under a constant N depends on the slip s alone: limit = μN (1 − e^(−s/L)).
 
 use crate::evidence::Evidence;
@@ -19,6 +19,7 @@ use tribosweep_mechanics::solver::interface::law::{
     Exponential, Law, PrakashClifton, Regularised, StaticKinetic,
 };
 use tribosweep_mechanics::solver::{Drive, Model, State, TimeStep};
+use tribosweep_mechanics::spec::{Contact, FrictionLaw, MuOfSpeed};
 
 const MASS_KG: f64 = 2.0;
 const STIFFNESS_N_M: f64 = 50.0;
@@ -133,7 +134,16 @@ fn the_slope_of_friction_is_a_damper() {
         MU * speed_m_s / (speed_m_s + scale_m_s),
         MU * scale_m_s / (speed_m_s + scale_m_s).powi(2),
     );
+    // Where three pairs lie on a line, the curve is that line.
+    let pairs = [[0.0, 0.52], [0.2, 0.46], [0.3, 0.43], [0.5, 0.37], [0.6, 0.34], [2.0, 0.4]];
+    let table = Law::of(&Contact {
+        law: FrictionLaw::Table,
+        mu: 0.4,
+        mu_of_speed: MuOfSpeed(pairs.to_vec()),
+        ..Contact::default()
+    });
     let cases = [
+        ("table, falling", (table, 0.4, -0.3)),
         ("exponential, falling", exponential(0.0)),
         ("exponential with a viscous part, rising", exponential(1.0)),
         ("regularised", regularised),

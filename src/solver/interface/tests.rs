@@ -6,7 +6,7 @@ use super::{Contacts, LIMIT, Status};
 use crate::solver::body::pin::NodeMotion;
 use crate::solver::real::Real;
 use crate::solver::{Drive, Model, State, step};
-use crate::spec::{DiskKind, JobSpec};
+use crate::spec::{Contact, DiskKind, FrictionLaw, JobSpec, MuOfSpeed};
 
 const STEPS: usize = 400;
 const SHIFT_M: f64 = 1.0 / 4096.0;
@@ -218,6 +218,12 @@ fn the_three_solves_have_one_rule() {
         Law::Exponential(Exponential { mu: 0.3, mu_static: 0.5, speed_m_s, slope_s_m: 0.1 }),
         Law::Regularised(Regularised { mu: 0.4, speed_m_s }),
         Law::PrakashClifton(PrakashClifton { mu: 0.4, length_m: 1.0e-8 }),
+        Law::of(&Contact {
+            law: FrictionLaw::Table,
+            mu: 0.4,
+            mu_of_speed: MuOfSpeed(vec![[0.0, 0.5], [speed_m_s, 0.3], [3.0 * speed_m_s, 0.35], [1.0, 0.4]]),
+            ..Contact::default()
+        }),
     ];
     // Nodes that are open, that stick and that slip, over all laws: nodes stick while the drive begins.
     let mut kinds = [0; 3];

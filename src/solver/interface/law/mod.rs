@@ -18,6 +18,7 @@ mod lanes;
 mod prakash_clifton;
 mod regularised;
 mod static_kinetic;
+mod table;
 
 pub(in crate::solver) use cone::project;
 pub use coulomb::Coulomb;
@@ -29,11 +30,13 @@ pub(in crate::solver) use lanes::LawOfLanes;
 pub use prakash_clifton::PrakashClifton;
 pub use regularised::Regularised;
 pub use static_kinetic::StaticKinetic;
+pub use table::Table;
 
 use crate::spec::{Contact, FrictionLaw as Name, Memory};
 
 /// A friction law with the coefficients of one lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a lane has one law, which is copied where a job begins")]
 pub enum Law {
     /// Coulomb's law with a constant coefficient.
     Coulomb(Coulomb),
@@ -45,6 +48,8 @@ pub enum Law {
     Regularised(Regularised),
     /// Friction that follows the normal force after some slip.
     PrakashClifton(PrakashClifton),
+    /// A coefficient that follows a table over the slip speed.
+    Table(Table),
 }
 
 /// Does the same with a law of any type.
@@ -57,6 +62,7 @@ macro_rules! with_law {
             Law::Exponential($own) => $call,
             Law::Regularised($own) => $call,
             Law::PrakashClifton($own) => $call,
+            Law::Table($own) => $call,
         }
     }};
 }
@@ -76,6 +82,7 @@ impl Law {
             Name::Exponential => Self::Exponential(Exponential::of(contact)),
             Name::Regularised => Self::Regularised(Regularised::of(contact)),
             Name::PrakashClifton => Self::PrakashClifton(PrakashClifton::of(contact)),
+            Name::Table => Self::Table(Table::of(contact)),
         }
     }
 
@@ -127,6 +134,7 @@ fn limit_of<W: FrictionLaw<N>, const N: usize>(law: &W, node: &AtNode<f64>, time
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spec::MuOfSpeed;
 
     /// Protects: a law without kinetic friction has finite coefficients at another μ: the static one stays, and elsewhere it
     /// changes in proportion.
@@ -140,6 +148,43 @@ mod tests {
         assert_eq!(static_kinetic(0.2, 0.3).with_mu(0.4), static_kinetic(0.4, 0.6));
     }
 
+    /// Protects: a table has the same coefficient in a step, in steady slip and in its own curve, at every speed and for every μ.
+    #[test]
+    fn a_table_is_one_curve() {
+        let table = MuOfSpeed(vec![[0.0, 0.5], [0.01, 0.4], [0.05, 0.2], [0.3, 0.25]]);
+        let law = |mu| {
+            let mu_of_speed = table.clone();
+            Law::of(&Contact { law: Name::Table, mu, mu_of_speed, ..Contact::default() })
+        };
+        let time_step_s = 1.0e-7;
+        for (mu, law) in [(0.25, law(0.25)), (0.5, law(0.5)), (0.5, law(0.25).with_mu(0.5))] {
+            for speed_m_s in [0.0, 0.003, 0.01, 0.02, 0.05, 0.17, 0.3, 5.0] {
+                let last_increment_m = [0.6, 0.8].map(|share| share * speed_m_s * time_step_s);
+                let node = AtNode {
+                    normal_n: 2.0,
+                    trial_n: [0.0; 2],
+                    stiffness_n_m: 1.0,
+                    last_increment_m,
+                    last_slipped: 1.0,
+                    last_limit_n: 0.0,
+                };
+                let expected = table.at(speed_m_s).map(|value| value * mu / 0.25);
+                let [found, slope_s_m] = law.steady(speed_m_s).unwrap();
+                // t has a few roundings, which the slopes of up to 10 parts of μ multiply.
+                for (found, expected) in [
+                    (found, expected[0]),
+                    (slope_s_m, expected[1]),
+                    (law.limit_n(&node, time_step_s) / 2.0, expected[0]),
+                ] {
+                    assert!(
+                        (found - expected).abs() < 1.0e-13 * (1.0 + expected.abs()),
+                        "{found}, {expected} at {speed_m_s} m/s"
+                    );
+                }
+            }
+        }
+    }
+
     /// Protects: every name of a study has the law of that name, with the coefficients of the contact.
     #[test]
     fn a_law_has_the_name_by_which_it_is_chosen() {
@@ -151,6 +196,7 @@ mod tests {
                 mu_static: Some(0.5),
                 speed_m_s: Some(0.1),
                 length_m: Some(1.0e-6),
+                mu_of_speed: MuOfSpeed(vec![[0.0, 0.5], [0.1, 0.25]]),
                 ..Contact::default()
             };
             let found = Law::of(&contact);
