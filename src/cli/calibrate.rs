@@ -3,7 +3,7 @@
 use super::error::CliError;
 use super::output::{log, print};
 use super::replace::Replacement;
-use super::report::{self, OutFolder};
+use super::report::{self, Bins, OutFolder};
 use super::study_args::StudyArgs;
 use super::submit::{Priority, submit};
 use super::work::{Checkpoints, Retries, Threads, options, work_on};
@@ -24,6 +24,8 @@ pub(crate) struct Args {
     /// squeals. Errors are standard deviations. Default: the points in the study's `calibrate`.
     #[arg(long, value_name = "FILE")]
     data: Option<PathBuf>,
+    #[command(flatten)]
+    bins: Bins,
     /// The free parameters, of those with a distribution in the study's `samples.of`; default: all of them. The others keep their
     /// values of the scene.
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
@@ -103,7 +105,11 @@ fn discrepancy(text: &str) -> Result<(Of, f64), String> {
 
 /// Runs the waves, and prints what they have found. If it is interrupted, this is what is known so far.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let data = args.data.as_deref().map(sweep::read_calibration_data).transpose()?;
+    let data = args
+        .data
+        .as_deref()
+        .map(|path| sweep::read_calibration_data(path, args.bins.number()))
+        .transpose()?;
     let (points, settings) = match data {
         Some(CalibrationData { points, settings, left_out }) => {
             if let Some(sentence) = left_out {

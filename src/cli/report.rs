@@ -8,10 +8,27 @@ use crate::exit;
 use crate::queue::{Location, Queue};
 use crate::report::accuracy;
 use crate::study::Spacing;
-use crate::sweep::{self, Purpose, ReportContent, ReportRequest, Revision};
+use crate::sweep::{self, MOST_BINS, Purpose, ReportContent, ReportRequest, Revision};
 use crate::worker::Interrupt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+/// How many rows of a file of measured points become one.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Bins {
+    /// With --data: take the means of the rows in N bins of the parameter that varies most, such as the speed, with the standard
+    /// deviation in a bin as a part of the error.
+    #[arg(long, value_name = "N", requires = "data",
+          value_parser = clap::value_parser!(u16).range(1..=MOST_BINS as i64))]
+    bins: Option<u16>,
+}
+
+impl Bins {
+    /// Their number, if there are any.
+    pub(crate) fn number(&self) -> Option<usize> {
+        self.bins.map(usize::from)
+    }
+}
 
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
@@ -24,6 +41,8 @@ pub(crate) struct Args {
     /// mu_star_error and frequency_error_hz, and parameters such as mu; may be repeated.
     #[arg(long = "data", value_name = "FILE")]
     data: Vec<PathBuf>,
+    #[command(flatten)]
+    bins: Bins,
     #[command(flatten)]
     axes: Axes,
     #[command(flatten)]
@@ -113,6 +132,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let request = ReportRequest {
         studies,
         data: args.data.clone(),
+        bins: args.bins.number(),
         x: x.clone(),
         by: by.clone(),
         y: y.clone(),

@@ -68,6 +68,8 @@ pub enum ClampSide {
     BothEnds,
     /// The whole top face; the width is not used.
     WholeTop,
+    /// A collet round the side of the pin, from the top face down over the width. The inside of the top face is free.
+    Collet,
 }
 
 impl ClampSide {
@@ -79,17 +81,18 @@ impl ClampSide {
         self.into()
     }
 
-    /// The direction, 0 for x and 1 for y, across which the strip has its width; none for the whole top.
+    /// The direction, 0 for x, 1 for y and 2 for z, across which the strip has its width; none for the whole top.
     pub fn axis_across(self) -> Option<usize> {
         match self {
             Self::InnerSide | Self::OuterSide | Self::BothSides => Some(0),
             Self::LeadingEnd | Self::TrailingEnd | Self::BothEnds => Some(1),
             Self::WholeTop => None,
+            Self::Collet => Some(2),
         }
     }
 }
 
-/// A clamp: the nodes of the top face within a strip are held in x and y.
+/// A clamp: the nodes of the top face within a strip, or round the side of the pin, are held in x and y.
 ///
 /// The strip is a width in metres, so that it means the same on every mesh; a mesh without a node
 /// row near that width is refused.
@@ -161,8 +164,8 @@ impl Scene {
         let [x, y, z] = pin.extent_m();
         let beside_strip_m = match self.clamp.side.axis_across() {
             Some(0) => x * x / y,
-            Some(_) => y * y / x,
-            None => 0.0,
+            Some(1) => y * y / x,
+            Some(_) | None => 0.0,
         };
         let longest_m = x.max(y).max(z).max(z * z / x.min(y)).max(beside_strip_m);
         // The frequency 0.16 c/ℓ is that of an oscillator with √(m/k) = ℓ/c.
@@ -252,9 +255,18 @@ impl Scene {
                 let right = format!(
                     "a width in metres (1 mm is 0.001 m) of at most {} m, the pin's edge in {}",
                     readable(edge),
-                    ["x", "y"][axis]
+                    ["x", "y", "z"][axis]
                 );
                 found.add("scene.clamp.width_m", readable(width), right);
+            }
+        }
+        if self.clamp.side == ClampSide::Collet {
+            if width == 0.0 {
+                found.add("scene.clamp.width_m", width, "a length > 0 m that the collet holds");
+            }
+            if self.holder.rotates() {
+                let right = "another side with a holder that rotates, which carries the top face alone";
+                found.add("scene.clamp.side", self.clamp.side.name(), right);
             }
         }
         let force = self.load.force_n;

@@ -18,12 +18,12 @@ pub struct CalibrationData {
     pub left_out: Option<String>,
 }
 
-/// Reads a file of measured points for a calibration.
+/// Reads a file of measured points for a calibration: its rows, or their means in `bins` bins of the parameter that varies.
 ///
 /// # Errors
 /// If the file cannot be used as measured points, if two parameters vary in it, or if a line lacks a parameter.
-pub fn read_calibration_data(path: &Path) -> Result<CalibrationData, SweepError> {
-    let file = measured::read(path, "data")?;
+pub fn read_calibration_data(path: &Path, bins: Option<usize>) -> Result<CalibrationData, SweepError> {
+    let file = measured::read(path, "data", bins)?;
     let refuse = |message: String| Err(SweepError::CalibrationData(format!("{}: {message}", path.display())));
     let mut settings = Vec::new();
     let mut along: Option<&str> = None;

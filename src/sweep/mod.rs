@@ -14,6 +14,7 @@
 //! runtime. Do not drop their futures before they are complete (no `select!`, no timeout around them): a transaction of
 //! the database may be open.
 
+mod bins;
 mod calibrate;
 mod database;
 mod deep;
@@ -40,6 +41,7 @@ mod transfer;
 mod trouble;
 mod work;
 
+pub use bins::MOST_BINS;
 pub use calibrate::{CalibrationData, read_calibration_data};
 pub use database::{
     Purpose, block_on, document, load_study, open, open_to_change, open_to_read, study_name, with_open,

@@ -25,6 +25,8 @@ pub struct ReportRequest {
     pub studies: Vec<String>,
     /// Files of measured points.
     pub data: Vec<PathBuf>,
+    /// The number of bins in which the rows of these files are averaged; none for the rows themselves.
+    pub bins: Option<usize>,
     /// The parameter along the axis; the study's own choice if absent.
     pub x: Option<String>,
     /// The parameter of the curves; the study's own choice if absent.
@@ -256,7 +258,7 @@ pub async fn read_report(queue: &mut Queue, request: &ReportRequest) -> Result<R
         .data
         .iter()
         .zip(&sources[request.studies.len()..])
-        .map(|(path, name)| measured::read(path, name))
+        .map(|(path, name)| measured::read(path, name, request.bins))
         .collect::<Result<_, _>>()?;
     let studies = request.stored(queue).await?;
     let mut of_studies = Vec::new();

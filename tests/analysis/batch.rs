@@ -7,7 +7,7 @@ use tribosweep_mechanics::analysis::batch::{Batch, Begun};
 use tribosweep_mechanics::analysis::continuation::PinMotion;
 use tribosweep_mechanics::analysis::{CoarseStart, JobRecord, Outcome, Unobserved, solve};
 use tribosweep_mechanics::spec::{
-    Accuracy, ClampSide, Continuation, DiskKind, FrictionLaw, JobSpec, Precision, Region, Shape,
+    Accuracy, ClampSide, Continuation, DiskKind, FrictionLaw, JobSpec, MuOfSpeed, Precision, Region, Shape,
     StabilityMethod, Start, Table,
 };
 
@@ -115,6 +115,8 @@ fn companions_and_interruptions_change_nothing_with_other_laws() {
                 contact.speed_m_s = Some([0.01, 0.1, 1.0][i % 3]);
                 contact.slope_s_m = Some([0.0, 0.2][i % 2]);
                 contact.length_m = Some([1.0e-6, 1.0e-5][i % 2]);
+                contact.mu_of_speed =
+                    MuOfSpeed(vec![[0.0, 0.5], [[0.01, 0.1][i % 2], 0.3], [1.0, [0.3, 0.4][i % 2]]]);
                 job.run.limit_s = job.run.limit_s.min(0.002);
             }
             companions_change_nothing_in(&jobs);

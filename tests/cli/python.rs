@@ -8,7 +8,7 @@ use crate::tools;
 
 /// What the module promises, as Python's own assertions.
 const CHECKS: &str = r#"
-import math, os, subprocess, sys
+import json, math, os, subprocess, sys
 import pandas
 import tribosweep
 
@@ -72,6 +72,55 @@ import numpy
 same_axis = tribosweep.run(study, db="sweep.db", out="report", replace=True, settings={"mu": numpy.float64(0.4), "omega_rpm": numpy.array([5, 20])})
 assert list(same_axis["job"]) == list(one["job"])
 assert tribosweep.validate({**study, "grid": {"mu": numpy.linspace(0.2, 0.4, 3)}})["jobs"] == 3
+
+stored = tribosweep.solve(study, db="solved.db", mu=0.4, omega_rpm=20)
+assert stored == record and tribosweep.solve(study, db="solved.db", mu=0.4, omega_rpm=20) == record
+assert "<td>mu_star</td>" in record._repr_html_(), record._repr_html_()
+[own] = json.loads(subprocess.run([program, "status", "--json", "--db", "solved.db"], capture_output=True, text=True).stdout)
+assert own["jobs"]["total"] == 1, own
+try:
+    tribosweep.solve(study, db="solved.db", mu=0.4)
+except tribosweep.Error as error:
+    assert "the study has 3 jobs" in str(error) and error.code == 2
+else:
+    raise AssertionError("three jobs are one record")
+
+motion = tribosweep.inspect(study, db="sweep.db", mu=0.4, omega_rpm=20, nodes=["centre"], fields=True)
+totals, face, fields = motion["totals"], motion["face"], motion["fields"]
+assert totals.attrs["job"] == same["job"] and totals.attrs["period_s"] > 0, totals.attrs
+total_n = totals["normal_n"].sel(time_s=face["time_s"], method="nearest")
+assert numpy.allclose(face["normal_n"].sum("node"), total_n, rtol=1e-9), "the forces of the face are the total"
+assert list(motion["nodes"]["node"].values) == ["centre"] and motion["nodes"]["state"].dims == ("node", "time_s")
+# The files have single precision.
+force_n = fields["contact_force_n"].isel(component_3=2).sum("point")
+total_n = totals["normal_n"].sel(time_s=fields["time_s"], method="nearest")
+assert numpy.allclose(force_n, total_n, rtol=1e-5), (force_n, total_n)
+height_m = fields["position_m"].isel(time_s=0, component_3=2)
+assert int((height_m == height_m.min()).sum()) == face.sizes["node"]
+
+indices = tribosweep.sensitivity("study", of=["mu_star"], db="sweep.db")
+assert set(indices["quantity"]) == {"mu_star"} and "omega_rpm" in set(indices["parameter"]), indices
+measured = pandas.DataFrame({"omega_rpm": [5.0, 20.0], "mu": 0.4, "mu_star": [2.0, 2.0], "mu_star_error": 0.01})
+apart = tribosweep.compare("study", measured, db="sweep.db")
+assert (apart["difference"] > 1).all() and len(apart) == 2, apart
+assert "below data at all 2 points" in apart.attrs["verdict"][0], apart.attrs
+
+# Files that a dictionary names are relative to the working folder.
+with open("mu.csv", "w") as table:
+    table.write("0,0.5\n0.1,0.3\n")
+with_table = {**study, "scene": {**study["scene"], "contact": {"law": "table", "mu_of_speed": "mu.csv"}}}
+assert tribosweep.validate(with_table, settings={"mu": 0.3})["jobs"] == 3
+
+# An interrupt of Python ends the program in order: what is done stays, and the same call goes on.
+import signal, threading
+long = {**study, "name": "long", "run": {"limit_s": 0.5, "stop_early": False}, "grid": {"mu": [0.4], "omega_rpm": list(range(1, 100))}}
+threading.Timer(2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    tribosweep.run(long, db="long.db", out="long", settings={"stability": "simulate"})
+except tribosweep.Error as error:
+    assert error.code == 3 and "interrupted" in str(error), (error.code, str(error))
+else:
+    raise AssertionError("99 long jobs were done in two seconds")
 
 modes = tribosweep.stability(study, db="sweep.db", out="modes", modes=2)
 assert len(modes) == 12 and set(modes["omega_rpm"]) == {5, 20, 50}, modes

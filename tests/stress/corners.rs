@@ -33,7 +33,7 @@ fn given_over_limit(spec: &JobSpec) -> f64 {
 }
 
 /// All corners. The predicates are evaluated for legal cases only.
-pub const CORNERS: [Corner; 44] = [
+pub const CORNERS: [Corner; 45] = [
     ("a holder that moves", |s| !s.scene.holder.is_ideal()),
     ("a static coefficient", |s| s.scene.contact.law == FrictionLaw::StaticKinetic),
     ("an exponential law", |s| s.scene.contact.law == FrictionLaw::Exponential),

@@ -274,8 +274,7 @@ fn holder(random: &mut Random, spec: &mut JobSpec) {
 fn clamp(random: &mut Random, spec: &mut JobSpec) {
     let pin = &spec.scene.pin;
     let side = random.pick(ClampSide::ALL);
-    let axis =
-        usize::from(matches!(side, ClampSide::LeadingEnd | ClampSide::TrailingEnd | ClampSide::BothEnds));
+    let axis = side.axis_across().unwrap_or(0);
     let row_m = pin.size_m[axis] / pin.elements[axis] as f64;
     let rows = random.whole(0, pin.elements[axis]) as f64;
     let anything = random.chance(0.05);

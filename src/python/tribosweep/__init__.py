@@ -6,17 +6,18 @@
     grid = tribosweep.grid(jobs, ["mu_star"])               # an xarray.Dataset over the parameters
     modes = tribosweep.stability("studies/mini.json")       # a DataFrame, a row for each mode of steady sliding
     found = tribosweep.calibrate("pin.json", "rig.csv")     # what measured points leave of the ranges of parameters
+    apart = tribosweep.compare("mini", "rig.csv")           # a DataFrame, a row for each difference from measured points
+    motion = tribosweep.inspect("studies/mini.json", mu=0.4, omega_rpm=7)["totals"]     # an xarray.Dataset over the time
 
-`run`, `read` and `stability` need pandas; `grid` also needs xarray. A study is the path of its file, or a dictionary with the same content.
+Frames need pandas; `grid` and `inspect` also need xarray. A study is the path of its file, or a dictionary with the same content.
 """
 
 from __future__ import annotations
 
+import hashlib
+import html
 import json
 import os
-import shutil
-import subprocess
-import sys
 import tempfile
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,41 +26,38 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
+from tribosweep._program import WITH_RESULTS, Error, InputWarning, call, doubts_of, output_of, program
+
 if TYPE_CHECKING:
     import pandas
     import xarray
 
-__all__ = ["Error", "InputWarning", "calibrate", "grid", "program", "read", "run", "solve", "stability", "validate"]
+__all__ = [
+    "Error",
+    "InputWarning",
+    "Record",
+    "calibrate",
+    "compare",
+    "grid",
+    "inspect",
+    "program",
+    "read",
+    "run",
+    "sensitivity",
+    "solve",
+    "stability",
+    "validate",
+]
 
 Study = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
-# Exit codes of the program with which results are there: all jobs are done, or some have failed.
-_WITH_RESULTS = (0, 1)
+class Record(dict[str, Any]):
+    """A dictionary of results, which a notebook shows as a table of its single values."""
 
-
-class Error(Exception):
-    """The program refused something. The text is its message; `code` is its exit code."""
-
-    def __init__(self, message: str, code: int) -> None:
-        super().__init__(message)
-        self.code = code
-
-
-class InputWarning(UserWarning):
-    """The program doubts something: an input in another unit, a strain that no material bears, a column that it left out."""
-
-
-def program() -> str:
-    """The path of the program: TRIBOSWEEP_PROGRAM, the one that was installed with this module, or the one on the PATH.
-
-    Raises FileNotFoundError if there is none.
-    """
-    given = os.environ.get("TRIBOSWEEP_PROGRAM")
-    beside = shutil.which("tribosweep", path=str(Path(sys.executable).parent))
-    found = given or beside or shutil.which("tribosweep")
-    if found is None:
-        raise FileNotFoundError("no program `tribosweep` on the PATH; set TRIBOSWEEP_PROGRAM to its path")
-    return found
+    def _repr_html_(self) -> str:
+        single = {name: value for name, value in self.items() if not isinstance(value, (dict, list))}
+        rows = (f"<tr><td>{html.escape(name)}</td><td>{html.escape(str(value))}</td></tr>" for name, value in single.items())
+        return f"<table>{''.join(rows)}</table>"
 
 
 def run(
@@ -84,9 +82,10 @@ def run(
     _pandas()  # Without it nothing is begun.
     with _file_of(study) as path:
         changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
-        _, doubts = _call(["run", path, *changes, *_options(db, out, threads, replace)], codes=_WITH_RESULTS)
+        options = _options(db, out, threads, replace)
+        _, doubts = call(["run", path, *changes, *options], codes=WITH_RESULTS, progress_of=db)
         # It repeats the warnings of the run.
-        plan, _ = _call(["validate", path, *changes, "--json", "--replace", "--db", os.fspath(db)])
+        plan, _ = call(["validate", path, *changes, "--json", "--replace", "--db", os.fspath(db)])
     jobs, further = _read(db, json.loads(plan)["study"])
     jobs.attrs["warnings"] = doubts + further
     _warn(doubts + further)
@@ -106,8 +105,12 @@ def read(db: str | os.PathLike[str], study: str) -> pandas.DataFrame:
     return jobs
 
 
-def solve(study: Study, *, preset: str | None = None, **settings: Any) -> dict[str, Any]:
-    """Solves one job and returns its record. Nothing is stored. `settings` are parameters such as mu=0.4.
+def solve(
+    study: Study, *, db: str | os.PathLike[str] | None = None, preset: str | None = None, **settings: Any
+) -> Record:
+    """Solves one job and returns its record. `settings` are parameters such as mu=0.4.
+
+    With a database `db` the result is stored there, in a study of its own, and found again by a later call. Otherwise nothing is stored.
 
     What the program warns of is an InputWarning.
 
@@ -115,10 +118,32 @@ def solve(study: Study, *, preset: str | None = None, **settings: Any) -> dict[s
     """
     changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
     with _file_of(study) as path:
-        text, doubts = _call(["solve", path, *changes, "--json"])
-    record: dict[str, Any] = json.loads(text)
+        if db is None:
+            text, doubts = call(["solve", path, *changes, "--json"])
+        else:
+            text, doubts = _stored(path, changes, db)
+    record = Record(json.loads(text))
     _warn(doubts)
     return record
+
+
+def _stored(path: str, changes: list[str], db: str | os.PathLike[str]) -> tuple[str, list[str]]:
+    """The record of the only job of a study, from a database or else solved and stored there."""
+    given = Path(path).read_text(encoding="utf-8") + "\n".join(changes)
+    name = "solved-" + hashlib.sha256(given.encode()).hexdigest()[:8]
+    options = [*changes, "--name", name]
+    plan, doubts = call(["validate", path, *options, "--json", "--replace", "--db", os.fspath(db)])
+    jobs = json.loads(plan)["jobs"]
+    if jobs != 1:
+        raise Error(f"the study has {jobs} jobs; give each parameter that varies a value", 2)
+    with tempfile.TemporaryDirectory() as folder:
+        call(["run", path, *options, *_options(db, folder, None, True)], codes=WITH_RESULTS, progress_of=db)
+    exported, _ = call(["export", name, "--all", "--format", "json", "--db", os.fspath(db)], codes=WITH_RESULTS)
+    row = json.loads(exported)
+    if row["status"] == "failed":
+        raise Error(row["error"], 1)
+    shown, _ = call(["show", row["job"], "--json", "--db", os.fspath(db)])
+    return json.dumps(json.loads(shown)["record"]), doubts
 
 
 def stability(
@@ -142,7 +167,7 @@ def stability(
     options = _options(db, out, threads, replace) + ["--modes", str(modes), "--json"]
     with _file_of(study) as path:
         changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
-        text, doubts = _call(["stability", path, *changes, *options], codes=_WITH_RESULTS)
+        text, doubts = call(["stability", path, *changes, *options], codes=WITH_RESULTS, progress_of=db)
     found: pandas.DataFrame = frames.DataFrame([json.loads(line) for line in text.splitlines()])
     found.attrs["warnings"] = doubts
     _warn(doubts)
@@ -163,7 +188,7 @@ def calibrate(
     threads: int | None = None,
     replace: bool = False,
     settings: Mapping[str, Any] | None = None,
-) -> dict[str, Any]:
+) -> Record:
     """Finds the values of free parameters that measured points do not rule out.
 
     `data` is a CSV file or a frame with the same columns: omega_rpm, mu_star, mu_star_error, frequency_hz, frequency_error_hz, squeals. Without it
@@ -177,28 +202,128 @@ def calibrate(
     options += ["--at", ",".join(f"{name}={float(value)!r}" for name, value in at.items())] if at else []
     options += [part for name, share in (discrepancy or {}).items() for part in ("--discrepancy", f"{name}={float(share)!r}")]
     options += [] if most_points is None else ["--most-points", str(most_points)]
-    with _file_of(study) as path, tempfile.TemporaryDirectory() as folder:
-        if data is not None and not isinstance(data, (str, os.PathLike)):
-            table = Path(folder) / "data.csv"
-            data.to_csv(table, index=False)
-            data = table
-        options += [] if data is None else ["--data", os.fspath(data)]
+    with _file_of(study) as path, _data_file(data) as measured:
+        options += [] if measured is None else ["--data", measured]
         changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
-        text, doubts = _call(["calibrate", path, *changes, *options], codes=_WITH_RESULTS)
-    found: dict[str, Any] = json.loads(text)
+        text, doubts = call(["calibrate", path, *changes, *options], codes=WITH_RESULTS, progress_of=db)
+    found = Record(json.loads(text))
     _warn(doubts)
     return found
 
 
-def validate(study: Study, *, preset: str | None = None, settings: Mapping[str, Any] | None = None) -> dict[str, Any]:
+def sensitivity(
+    studies: str | Sequence[str],
+    *,
+    of: Sequence[str] = ("mu_star", "frequency_hz"),
+    db: str | os.PathLike[str] = "tribosweep.db",
+    out: str | os.PathLike[str] | None = None,
+) -> pandas.DataFrame:
+    """How much each parameter of stored studies decides, from their own jobs: a row for each index of each parameter and quantity.
+
+    Raises Error if the database has no such study, or if a quantity is none.
+    """
+    names = [studies] if isinstance(studies, str) else list(studies)
+    table, messages = _reported(["sensitivity", *names, "--of", ",".join(of)], "sensitivity.csv", db, out)
+    _warn(doubts_of(messages))
+    return table
+
+
+def compare(
+    studies: str | Sequence[str],
+    data: str | os.PathLike[str] | pandas.DataFrame | None = None,
+    *,
+    db: str | os.PathLike[str] = "tribosweep.db",
+    out: str | os.PathLike[str] | None = None,
+) -> pandas.DataFrame:
+    """Compares stored studies with each other and with measured points: a row for each difference from the first study.
+
+    `data` is a CSV file or a frame with the same columns, as for `calibrate`. The sentences of the verdict are in `attrs["verdict"]`.
+
+    Raises Error if the database has no such study, or if the data cannot be used.
+    """
+    names = [studies] if isinstance(studies, str) else list(studies)
+    with _data_file(data) as path:
+        measured = [] if path is None else ["--data", path]
+        table, messages = _reported(["report", *names, *measured], "differences.csv", db, out)
+    others = ("warning: ", "  ", "report written to ")
+    table.attrs["verdict"] = [line for line in messages.splitlines() if line and not line.startswith(others)]
+    _warn(doubts_of(messages))
+    return table
+
+
+def inspect(
+    study: Study,
+    *,
+    preset: str | None = None,
+    nodes: Sequence[str] = (),
+    cycles: int | None = None,
+    fields: bool = False,
+    db: str | os.PathLike[str] = "tribosweep.db",
+    out: str | os.PathLike[str] | None = None,
+    **settings: Any,
+) -> dict[str, xarray.Dataset]:
+    """Runs one job again and returns what its motion is like: `totals` over the time, `nodes` over node and time, and `face` over time and
+    node of the contact face. With `fields`, also those of all nodes of the pin over one cycle.
+
+    `nodes` are names such as "front_centre", or "X,Y" in mm. The attributes of `totals` have the key of the job and the period of its cycle.
+
+    Raises Error if the job is refused or fails.
+    """
+    from tribosweep import _inspection
+
+    options = [part for node in nodes for part in ("--node", node)]
+    options += [] if cycles is None else ["--cycles", str(cycles)]
+    options += [] if preset is None else ["--preset", preset]
+    values = [part for part in _settings(settings) if part != "--set"]
+    with _file_of(study) as path, _folder(out) as folder:
+        _, doubts = call(["inspect", path, *values, *options, "--db", os.fspath(db), "--out", folder])
+        found = _inspection.read(Path(folder), with_fields=fields)
+    _warn(doubts)
+    return found
+
+
+def _reported(
+    command: list[str], file: str, db: str | os.PathLike[str], out: str | os.PathLike[str] | None
+) -> tuple[pandas.DataFrame, str]:
+    """A table of the report that a command writes, and its messages."""
+    frames = _pandas()
+    with _folder(out) as folder:
+        _, messages = output_of([*command, "--db", os.fspath(db), "--out", folder])
+        table: pandas.DataFrame = frames.read_csv(Path(folder) / file)
+    return table, messages
+
+
+@contextmanager
+def _folder(out: str | os.PathLike[str] | None) -> Iterator[str]:
+    """A folder for a report: that one, or one that exists as long as it is needed."""
+    if out is not None:
+        yield os.fspath(out)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        yield str(Path(folder) / "report")
+
+
+@contextmanager
+def _data_file(data: str | os.PathLike[str] | pandas.DataFrame | None) -> Iterator[str | None]:
+    """The path of a file of measured points; that of a frame exists as long as it is needed."""
+    if data is None or isinstance(data, (str, os.PathLike)):
+        yield None if data is None else os.fspath(data)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        table = Path(folder) / "data.csv"
+        data.to_csv(table, index=False)
+        yield str(table)
+
+
+def validate(study: Study, *, preset: str | None = None, settings: Mapping[str, Any] | None = None) -> Record:
     """Checks a study without running it, and returns what its jobs take.
 
     What the program warns of is an InputWarning. Raises Error with all mistakes if the study is refused.
     """
     with _file_of(study) as path:
         changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
-        text, doubts = _call(["validate", path, *changes, "--json"])
-    found: dict[str, Any] = json.loads(text)
+        text, doubts = call(["validate", path, *changes, "--json"])
+    found = Record(json.loads(text))
     _warn(doubts)
     return found
 
@@ -246,6 +371,25 @@ def _settings(settings: Mapping[str, Any] | None) -> list[str]:
     return [part for name, value in (settings or {}).items() for part in ("--set", f"{name}={text(value)}")]
 
 
+# Where a study may name a file.
+_FILES = ("scene/pin/mesh/file", "scene/pin/base/height_map/file", "scene/contact/mu_of_speed", "samples/file")
+
+
+def _with_whole_paths(study: Mapping[str, Any]) -> dict[str, Any]:
+    """The study with whole paths of the files that it names: in a dictionary they are relative to the working folder."""
+
+    def changed(value: Any, steps: list[str]) -> Any:
+        if not steps:
+            return str(Path(value).resolve()) if isinstance(value, str) else value
+        if not isinstance(value, Mapping) or steps[0] not in value:
+            return value
+        return {**value, steps[0]: changed(value[steps[0]], steps[1:])}
+
+    for file in _FILES:
+        study = changed(study, file.split("/"))
+    return dict(study)
+
+
 @contextmanager
 def _file_of(study: Study) -> Iterator[str]:
     """The path of the study's file; that of a dictionary exists as long as it is needed."""
@@ -254,12 +398,12 @@ def _file_of(study: Study) -> Iterator[str]:
         return
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "study.json"
-        path.write_text(json.dumps({"name": "study", **study}, default=_plain), encoding="utf-8")
+        path.write_text(json.dumps(_with_whole_paths({"name": "study", **study}), default=_plain), encoding="utf-8")
         yield str(path)
 
 
 def _read(db: str | os.PathLike[str], study: str) -> tuple[pandas.DataFrame, list[str]]:
-    text, doubts = _call(["export", study, "--all", "--db", os.fspath(db)], codes=_WITH_RESULTS)
+    text, doubts = call(["export", study, "--all", "--db", os.fspath(db)], codes=WITH_RESULTS)
     jobs: pandas.DataFrame = _pandas().read_csv(StringIO(text))
     return jobs, doubts
 
@@ -268,27 +412,3 @@ def _warn(doubts: Sequence[str]) -> None:
     # At the line that has called a function of this module.
     for doubt in doubts:
         warnings.warn(doubt, InputWarning, stacklevel=3)
-
-
-def _doubts(messages: str) -> list[str]:
-    """The warnings among the messages of the program, each with the lines of help below it."""
-    doubts: list[str] = []
-    is_inside = False
-    for line in messages.splitlines():
-        if line.startswith("warning: "):
-            doubts.append(line.removeprefix("warning: "))
-            is_inside = True
-        elif is_inside and line.startswith("  "):
-            doubts[-1] += "\n" + line
-        else:
-            is_inside = False
-    return doubts
-
-
-def _call(arguments: Sequence[str], codes: Sequence[int] = (0,)) -> tuple[str, list[str]]:
-    """The output of the program and its warnings."""
-    done = subprocess.run([program(), *arguments], capture_output=True, text=True, encoding="utf-8", check=False)
-    if done.returncode not in codes:
-        message = "\n".join(line for line in done.stderr.splitlines() if line)
-        raise Error(message or f"the program ended with code {done.returncode}", done.returncode)
-    return done.stdout, _doubts(done.stderr)

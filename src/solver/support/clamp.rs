@@ -28,7 +28,7 @@ pub fn clamped_strip(mesh: &PinMesh, clamp: &Clamp) -> Result<ClampedStrip, Solv
         return Ok(ClampedStrip { nodes: nodes.to_vec(), width_m: 0.0 });
     }
     let (low, high) = match clamp.side {
-        ClampSide::InnerSide | ClampSide::LeadingEnd => (true, false),
+        ClampSide::InnerSide | ClampSide::LeadingEnd | ClampSide::Collet => (true, false),
         ClampSide::OuterSide | ClampSide::TrailingEnd => (false, true),
         ClampSide::BothSides | ClampSide::BothEnds => (true, true),
         ClampSide::WholeTop => (false, false),
@@ -36,8 +36,11 @@ pub fn clamped_strip(mesh: &PinMesh, clamp: &Clamp) -> Result<ClampedStrip, Solv
     let Some(axis) = clamp.side.axis_across() else {
         return Ok(ClampedStrip { nodes: mesh.top_nodes(), width_m: mesh.size_m()[0] });
     };
-    let rows = Rows::new(mesh, axis);
-    let last_row = rows.nearest(clamp.width_m);
+    let is_collet = clamp.side == ClampSide::Collet;
+    let nodes = if is_collet { mesh.side_nodes() } else { mesh.top_nodes() };
+    let rows = Rows::new(mesh, axis, &nodes);
+    // The contact face stays free.
+    let last_row = rows.nearest(clamp.width_m).min(rows.at_m.len() - 1 - usize::from(is_collet));
     let width_m = rows.at_m[last_row];
     // The relative tolerance of 1e-12 covers the rounding of decimal widths.
     if (width_m - clamp.width_m).abs() > WIDTH_TOLERANCE * clamp.width_m * (1.0 + 1e-12) {
@@ -53,32 +56,40 @@ pub fn clamped_strip(mesh: &PinMesh, clamp: &Clamp) -> Result<ClampedStrip, Solv
     let held = |(_, row): &(usize, usize)| {
         (low && *row <= last_row) || (high && rows.at_m.len() - 1 - row <= last_row)
     };
-    let nodes = mesh.top_nodes().into_iter().zip(rows.of_top_nodes.iter().copied());
+    let nodes = nodes.into_iter().zip(rows.of_nodes.iter().copied());
     Ok(ClampedStrip { nodes: nodes.filter(held).map(|(node, _)| node).collect(), width_m })
 }
 
-/// The rows of nodes of the top face across one direction. Rows lie symmetrically about the axis.
+/// The rows of some nodes across one direction: those of the top face, which lie symmetrically about the axis, or those of the side, from
+/// the top face down.
 struct Rows {
     /// Distance \[m\] of each row from the first.
     at_m: Vec<f64>,
     /// Their equal distance \[m\], if it is equal.
     spacing_m: Option<f64>,
-    /// The row of each node of the top face.
-    of_top_nodes: Vec<usize>,
+    /// The row of each node.
+    of_nodes: Vec<usize>,
 }
 
 impl Rows {
-    fn new(mesh: &PinMesh, axis: usize) -> Self {
-        let top = mesh.top_nodes();
+    fn new(mesh: &PinMesh, axis: usize, nodes: &[usize]) -> Self {
+        let is_downwards = axis == 2;
         if let Some(block) = mesh.block() {
             let h = block.element_size_m()[axis];
+            let last = block.elements()[axis];
+            let row = |node: &usize| {
+                let row = block.grid_position(*node)[axis];
+                if is_downwards { last - row } else { row }
+            };
             return Self {
-                at_m: (0..=block.elements()[axis]).map(|row| row as f64 * h).collect(),
+                at_m: (0..=last).map(|row| row as f64 * h).collect(),
                 spacing_m: Some(h),
-                of_top_nodes: top.iter().map(|&node| block.grid_position(node)[axis]).collect(),
+                of_nodes: nodes.iter().map(row).collect(),
             };
         }
-        let positions: Vec<f64> = top.iter().map(|&node| mesh.own_coordinates_m(node)[axis]).collect();
+        let sign = if is_downwards { -1.0 } else { 1.0 };
+        let positions: Vec<f64> =
+            nodes.iter().map(|&node| sign * mesh.own_coordinates_m(node)[axis]).collect();
         let mut sorted = positions.clone();
         sorted.sort_by(f64::total_cmp);
         // Nodes of a row agree to the rounding of their coordinates.
@@ -86,7 +97,7 @@ impl Rows {
         sorted.dedup_by(|next, kept| *next - *kept <= near);
         let row = |position: &f64| sorted.partition_point(|at| *at < position - near);
         Self {
-            of_top_nodes: positions.iter().map(row).collect(),
+            of_nodes: positions.iter().map(row).collect(),
             at_m: sorted.iter().map(|at| at - sorted[0]).collect(),
             spacing_m: None,
         }
@@ -166,7 +177,7 @@ fn rocking(mesh: &PinMesh, holder: &Holder) -> Rocking {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::body::pin::BlockMesh;
+    use crate::solver::body::pin::{BlockMesh, GeneralMesh, Tilt, cylinder};
 
     const SIZE_M: [f64; 3] = [0.012, 0.015, 0.010];
 
@@ -211,5 +222,32 @@ mod tests {
         let error = strip([6, 8, 5], ClampSide::InnerSide, 0.001).unwrap_err();
         let SolverError::ClampOffMesh { below_m, above_m, .. } = error else { panic!("{error}") };
         assert_eq!((below_m, above_m), (0.0, 0.002));
+    }
+
+    /// Protects: a collet holds the nodes of the side down to the row nearest to its length, on blocks and cylinders, and neither the inside
+    /// of the top face nor the contact face.
+    #[test]
+    fn a_collet_holds_the_side() {
+        let block: PinMesh = BlockMesh::new(SIZE_M, [6, 5, 10]).into();
+        let round = GeneralMesh::new(&cylinder([0.008, 0.008, 0.010], 6, 10), Tilt::default()).unwrap();
+        for (mesh, is_on_side) in [
+            (block, (|x| x[0].abs() > 0.00599 || x[1].abs() > 0.00749) as fn([f64; 3]) -> bool),
+            (PinMesh::from(round), |x| libm::hypot(x[0], x[1]) > 0.00399),
+        ] {
+            let clamp = |width_m| Clamp { side: ClampSide::Collet, width_m };
+            let found = clamped_strip(&mesh, &clamp(0.0039)).unwrap();
+            let expected: Vec<usize> = (0..mesh.node_count())
+                .filter(|&node| {
+                    let x = mesh.own_coordinates_m(node);
+                    is_on_side(x) && x[2] > 0.0059
+                })
+                .collect();
+            let mut nodes = found.nodes.clone();
+            nodes.sort_unstable();
+            assert!((found.width_m - 0.004).abs() < 1e-12 && !nodes.is_empty());
+            assert_eq!(nodes, expected);
+            let whole = clamped_strip(&mesh, &clamp(0.01)).unwrap();
+            assert!((whole.width_m - 0.009).abs() < 1e-12, "the contact face stays free");
+        }
     }
 }

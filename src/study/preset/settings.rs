@@ -104,9 +104,11 @@ impl Preset {
         let mut elements = pin.extent_m().map(|edge_m| ((edge_m / size_m + 0.5) as usize).max(1));
         if pin.shape == Shape::Cylinder {
             let across = elements[0].max(FEWEST_ACROSS);
-            return [across, across, elements[2]];
+            elements = [across, across, elements[2]];
         }
-        if let Some(axis) = clamp.side.axis_across() {
+        // Rows across a cylinder are at many distances.
+        let has_rows = |axis: &usize| pin.shape != Shape::Cylinder || *axis == 2;
+        if let Some(axis) = clamp.side.axis_across().filter(has_rows) {
             let desired = elements[axis];
             elements[axis] = (desired..=MAX_REFINEMENT.saturating_mul(desired))
                 .take(MAX_TRIED_COUNTS)

@@ -111,6 +111,8 @@ fn clamped(spec: &JobSpec) -> Vec<[[f64; 2]; 2]> {
         ClampSide::BothSides => vec![inner, outer],
         ClampSide::BothEnds => vec![leading, trailing],
         ClampSide::WholeTop => vec![[[-x, x], [-y, y]]],
+        // It is drawn on the sides.
+        ClampSide::Collet => Vec::new(),
     }
 }
 
@@ -119,6 +121,16 @@ fn draw_clamp(svg: &mut Svg, view: &View, spec: &JobSpec) {
     for [[left, right], [near, far]] in clamped(spec) {
         let strip = [[left, near, h], [right, near, h], [right, far, h], [left, far, h]];
         svg.polygon(&strip.map(|point| view.at(point)), (VERMILLION, 0.75), None);
+    }
+    if spec.scene.clamp.side == ClampSide::Collet {
+        let low = h - spec.scene.clamp.width_m.min(h);
+        let [x, y, _] = spec.scene.pin.extent_m().map(|edge| edge / 2.0);
+        // The sides that the drawing shows.
+        let sides = [[[-x, -y], [x, -y]], [[x, -y], [x, y]]];
+        for [[ax, ay], [bx, by]] in sides {
+            let side = [[ax, ay, h], [bx, by, h], [bx, by, low], [ax, ay, low]];
+            svg.polygon(&side.map(|point| view.at(point)), (VERMILLION, 0.75), None);
+        }
     }
 }
 
@@ -205,6 +217,10 @@ fn caption(spec: &JobSpec, survey: &Survey) -> String {
     let clamp = match (groups, spec.scene.clamp.side) {
         (Some([.., group]), _) => format!("the nodes of the group {group} are held in x and y"),
         (None, ClampSide::WholeTop) => "the whole top face is held in x and y".to_owned(),
+        (None, ClampSide::Collet) => {
+            let width = lines::of(survey, "clamp_width_m");
+            format!("the side of the pin is held in x and y over {width} from the top")
+        }
         (None, side) => {
             let width = lines::of(survey, "clamp_width_m");
             format!("a strip of {width} at the {} of the top face is held in x and y", name(side))
@@ -273,5 +289,6 @@ fn name(side: ClampSide) -> &'static str {
         ClampSide::BothSides => "inner and the outer side",
         ClampSide::BothEnds => "leading and the trailing end",
         ClampSide::WholeTop => "whole",
+        ClampSide::Collet => "side",
     }
 }

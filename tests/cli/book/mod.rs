@@ -52,7 +52,10 @@ fn every_page_can_be_followed() {
     let work = || {
         loop {
             let Some((name, page)) = waiting.lock().unwrap().next() else { break };
-            match catch_unwind(|| reader::follow(name, page)) {
+            let begun = std::time::Instant::now();
+            let followed = catch_unwind(|| reader::follow(name, page));
+            println!("{name}: {:.1} s", begun.elapsed().as_secs_f64());
+            match followed {
                 Ok(Some(files)) => written.lock().unwrap().extend(files),
                 Ok(None) => *is_whole.lock().unwrap() = false,
                 Err(_) => failed.lock().unwrap().push(name),

@@ -5,7 +5,7 @@ use crate::solver::body::hexahedron::corner_jacobians;
 use crate::solver::error::SolverError;
 use crate::solver::field::Layout;
 use nalgebra::Vector3;
-use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
 
 /// A hexahedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -272,6 +272,24 @@ impl GeneralMesh {
     /// Nodes of the face that carries the load, in ascending order.
     pub fn top_nodes(&self) -> &[usize] {
         &self.top_nodes
+    }
+
+    /// Nodes of the faces that are neither between two elements nor on the contact face or the face that carries the load, in ascending
+    /// order.
+    pub fn side_nodes(&self) -> Vec<usize> {
+        let mut counts: HashMap<[usize; 4], usize> = HashMap::new();
+        for element in &self.elements {
+            for face in FACES {
+                *counts.entry(sorted(face.map(|corner| element.nodes[corner]))).or_default() += 1;
+            }
+        }
+        let is_top = |node: &usize| self.top_nodes.binary_search(node).is_ok();
+        let is_side = |face: &[usize; 4]| {
+            !face.iter().all(|node| *node < self.contact_areas_m2.len()) && !face.iter().all(is_top)
+        };
+        let faces = counts.into_iter().filter(|(face, count)| *count == 1 && is_side(face));
+        let nodes: BTreeSet<usize> = faces.flat_map(|(face, _)| face).collect();
+        nodes.into_iter().collect()
     }
 
     /// Their tributary areas \[m²\].

@@ -127,6 +127,21 @@ impl PinMesh {
         }
     }
 
+    /// Nodes of the surface beside the contact face and the face that carries the load, with their edges, in ascending order.
+    pub fn side_nodes(&self) -> Vec<usize> {
+        match self {
+            Self::Block(mesh) => {
+                let [nx, ny, _] = mesh.elements();
+                let is_on_side = |node: &usize| {
+                    let [x, y, _] = mesh.grid_position(*node);
+                    x == 0 || x == nx || y == 0 || y == ny
+                };
+                (0..mesh.node_count()).filter(is_on_side).collect()
+            }
+            Self::General(mesh) => mesh.side_nodes(),
+        }
+    }
+
     /// Tributary areas \[m²\] of the nodes of the contact face.
     pub fn contact_areas_m2(&self) -> Vec<f64> {
         match self {
