@@ -1,15 +1,34 @@
 //! Means of measured points in bins of the parameter that varies most: a record of an instrument has a row for each sample.
 
-use super::measured::MeasuredFile;
+use super::measured::{self, MeasuredError, MeasuredFile};
 use crate::report::{JobRow, MeasuredValue, Measurement, Parameters, RowState};
 use indexmap::IndexMap;
 use serde_json::Value;
+use std::path::Path;
 
 /// From this ratio of the largest to the least value on, bins are equally wide in the logarithm.
 const WIDE: f64 = 10.0;
 
 /// Most bins.
 pub const MOST_BINS: usize = 1000;
+
+/// Reads a file of points, which get `source_name` as their study: its rows, or their means in `bins` bins.
+pub(super) fn read(
+    path: &Path,
+    source_name: &str,
+    bins: Option<usize>,
+) -> Result<MeasuredFile, MeasuredError> {
+    let points = measured::read(path, source_name)?;
+    match bins {
+        None => Ok(points),
+        Some(bins) => averaged(points, bins).ok_or_else(|| {
+            let message =
+                "no parameter that is a number varies; expected one, such as omega_rpm, for the bins"
+                    .to_owned();
+            MeasuredError::Content { file: path.display().to_string(), line: 1, column: None, message }
+        }),
+    }
+}
 
 /// The points of a file as their means in `bins` bins of the parameter that has the most values, apart for each set of the others. The error
 /// of a mean has the standard deviation of its values, which need not be independent of each other, and the error that they have

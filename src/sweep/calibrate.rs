@@ -1,7 +1,8 @@
 //! From a file of measured points to a study that is calibrated with them.
 
+use super::bins;
 use super::error::SweepError;
-use super::measured::{self, MeasuredFile};
+use super::measured::MeasuredFile;
 use crate::report::{FREQUENCY, JobRow, MU_STAR, RowState};
 use crate::study::MeasuredPoint;
 use serde_json::{Map, Value};
@@ -18,12 +19,12 @@ pub struct CalibrationData {
     pub left_out: Option<String>,
 }
 
-/// Reads a file of measured points for a calibration: its rows, or their means in `bins` bins of the parameter that varies.
+/// Reads a file of measured points for a calibration: its rows, or their means in `count` bins of the parameter that varies.
 ///
 /// # Errors
 /// If the file cannot be used as measured points, if two parameters vary in it, or if a line lacks a parameter.
-pub fn read_calibration_data(path: &Path, bins: Option<usize>) -> Result<CalibrationData, SweepError> {
-    let file = measured::read(path, "data", bins)?;
+pub fn read_calibration_data(path: &Path, count: Option<usize>) -> Result<CalibrationData, SweepError> {
+    let file = bins::read(path, "data", count)?;
     let refuse = |message: String| Err(SweepError::CalibrationData(format!("{}: {message}", path.display())));
     let mut settings = Vec::new();
     let mut along: Option<&str> = None;

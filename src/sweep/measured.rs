@@ -1,6 +1,5 @@
 //! Files of measured points, for comparison with studies: CSV with a column for each parameter and result.
 
-use super::bins::averaged;
 use super::header::suggestion;
 use crate::report::columns::ExportColumn;
 use crate::report::{FREQUENCY, JobRow, MeasuredValue, Measurement, Parameters, RowState, SCALARS, Scalar};
@@ -99,26 +98,12 @@ impl Lines<'_> {
     }
 }
 
-/// Reads a file of points, which get `source_name` as their study: its rows, or their means in `bins` bins.
-pub(super) fn read(
-    path: &Path,
-    source_name: &str,
-    bins: Option<usize>,
-) -> Result<MeasuredFile, MeasuredError> {
+/// Reads a file of points, which get `source_name` as their study.
+pub(super) fn read(path: &Path, source_name: &str) -> Result<MeasuredFile, MeasuredError> {
     let file = path.display().to_string();
-    let text = match read_text(path, MOST_BYTES) {
-        Ok(text) => text,
-        Err(reason) => return Err(MeasuredError::Read { file, reason }),
-    };
-    let points = parse(&text, &file, source_name)?;
-    match bins {
-        None => Ok(points),
-        Some(bins) => averaged(points, bins).ok_or_else(|| {
-            let message =
-                "no parameter that is a number varies; expected one, such as omega_rpm, for the bins"
-                    .to_owned();
-            MeasuredError::Content { file, line: 1, column: None, message }
-        }),
+    match read_text(path, MOST_BYTES) {
+        Ok(text) => parse(&text, &file, source_name),
+        Err(reason) => Err(MeasuredError::Read { file, reason }),
     }
 }
 

@@ -1,9 +1,10 @@
 //! What a report is asked to show: studies and measured points side by side, and the axes.
 
+use super::bins;
 use super::database::readable_study;
 use super::difference::{Difference, InputDifference};
 use super::error::SweepError;
-use super::measured::{self, MeasuredFile};
+use super::measured::MeasuredFile;
 use super::rows::read_rows;
 use super::selection::values;
 use crate::publish::value;
@@ -258,7 +259,7 @@ pub async fn read_report(queue: &mut Queue, request: &ReportRequest) -> Result<R
         .data
         .iter()
         .zip(&sources[request.studies.len()..])
-        .map(|(path, name)| measured::read(path, name, request.bins))
+        .map(|(path, name)| bins::read(path, name, request.bins))
         .collect::<Result<_, _>>()?;
     let studies = request.stored(queue).await?;
     let mut of_studies = Vec::new();

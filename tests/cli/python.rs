@@ -98,6 +98,7 @@ assert numpy.allclose(force_n, total_n, rtol=1e-5), (force_n, total_n)
 height_m = fields["position_m"].isel(time_s=0, component_3=2)
 assert int((height_m == height_m.min()).sum()) == face.sizes["node"]
 
+tribosweep.run(study, db="sweep.db", out="report", replace=True)
 indices = tribosweep.sensitivity("study", of=["mu_star"], db="sweep.db")
 assert set(indices["quantity"]) == {"mu_star"} and "omega_rpm" in set(indices["parameter"]), indices
 measured = pandas.DataFrame({"omega_rpm": [5.0, 20.0], "mu": 0.4, "mu_star": [2.0, 2.0], "mu_star_error": 0.01})

@@ -181,7 +181,12 @@ fn plausible(spec: &JobSpec, record: &JobRecord, epsilon: f64) -> Result<(), Str
         // Friction that rises with the speed, or that outlives a fall of the normal force, has no such limit.
         FrictionLaw::Exponential if contact.slope_s_m.is_some() => f64::INFINITY,
         FrictionLaw::PrakashClifton => f64::INFINITY,
-        _ => contact.mu.max(contact.mu_static.unwrap_or(0.0)) * (1.0 + rounding + 100.0 * epsilon),
+        _ => {
+            let scale = contact.mu / contact.mu_of_speed.fast().unwrap_or(1.0);
+            let table = contact.mu_of_speed.0.iter().map(|[_, mu]| scale * mu).fold(0.0, f64::max);
+            let largest = contact.mu.max(contact.mu_static.unwrap_or(0.0)).max(table);
+            largest * (1.0 + rounding + 100.0 * epsilon)
+        }
     };
     require(record.mu_star_contact.abs() <= most, || {
         format!("mean contact friction {}", record.mu_star_contact)

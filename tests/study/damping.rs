@@ -228,3 +228,26 @@ fn a_sliding_speed_gives_omega() {
         assert_contains(&refusal(text), &[expected]);
     }
 }
+
+/// Protects: a collet grips a length of the side that leaves the contact face free, on a mesh that has a row there, and a preset makes such a mesh.
+#[test]
+fn a_collet_needs_a_length_and_a_row() {
+    let study = |more: &str| {
+        format!(
+            r#"{{ "scene": {{ "pin": {{ "shape": "cylinder", "diameter_m": 0.008, "size_m": [0.008, 0.008, 0.02] }}, "clamp": {{ "side": "collet"{more} }} }}, "preset": "draft" }}"#
+        )
+    };
+    let spec = parse(&study(r#", "width_m": 0.012"#)).base().clone();
+    let row_m = 0.02 / spec.scene.pin.elements[2] as f64;
+    assert!((0.012 / row_m - (0.012 / row_m).round()).abs() < 1e-9, "{:?}", spec.scene.pin.elements);
+    for (more, expected) in [
+        (r#", "width_m": 0"#, "scene.clamp.width_m = 0: expected a length > 0 m that the collet holds"),
+        (r#", "width_m": 0.03"#, "of at most 0.02 m, the pin's edge in z"),
+        (
+            r#", "width_m": 0.01 }, "holder": { "rotational_stiffness_x_nm_rad": 100"#,
+            "scene.clamp.side = collet: expected another side with a holder that rotates",
+        ),
+    ] {
+        assert_contains(&refusal(&study(more)), &[expected]);
+    }
+}
