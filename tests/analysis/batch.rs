@@ -112,7 +112,7 @@ fn companions_and_interruptions_change_nothing_with_other_laws() {
                 let contact = &mut job.scene.contact;
                 contact.law = *law;
                 contact.mu_static = Some([0.5, 0.1][i % 2]);
-                contact.speed_m_s = Some([0.01, 0.1, 1.0][i % 3]);
+                contact.speed_m_s = Some([0.1, 0.2, 1.0][i % 3]);
                 contact.slope_s_m = Some([0.0, 0.2][i % 2]);
                 contact.length_m = Some([1.0e-6, 1.0e-5][i % 2]);
                 contact.mu_of_speed =

@@ -33,7 +33,7 @@ fn given_over_limit(spec: &JobSpec) -> f64 {
 }
 
 /// All corners. The predicates are evaluated for legal cases only.
-pub const CORNERS: [Corner; 45] = [
+pub const CORNERS: [Corner; 46] = [
     ("a holder that moves", |s| !s.scene.holder.is_ideal()),
     ("a static coefficient", |s| s.scene.contact.law == FrictionLaw::StaticKinetic),
     ("an exponential law", |s| s.scene.contact.law == FrictionLaw::Exponential),
@@ -67,6 +67,7 @@ pub const CORNERS: [Corner; 45] = [
     ("pin's edge at the axis", |s| s.scene.disk.track_radius_m < 0.500_001 * s.scene.pin.size_m[0]),
     ("tied top", |s| s.scene.top == TopFace::TiedInZ),
     ("free top", |s| s.scene.top == TopFace::FreeInZ),
+    ("a collet", |s| s.scene.clamp.side == ClampSide::Collet),
     ("whole top clamped", |s| s.scene.clamp.side == ClampSide::WholeTop),
     ("clamp of one node row", |s| s.scene.clamp.side != ClampSide::WholeTop && s.scene.clamp.width_m == 0.0),
     ("β₂ = ½", |s| s.numerics.beta2 == 0.5),

@@ -232,6 +232,7 @@ fn holder(random: &mut Random, spec: &mut JobSpec) {
     let pin_kg = pin.density_kg_m3 * lx * ly * lz;
     let pin_n_m = pin.young_modulus_pa * lx * ly / lz;
     let is_tied = spec.scene.top == TopFace::TiedInZ;
+    let may_rotate = is_tied && spec.scene.clamp.side != ClampSide::Collet;
     let holder = &mut spec.scene.holder;
     holder.mass_kg = Some(if random.chance(0.2) { 0.0 } else { pin_kg * random.log_between(1.0e-3, 1.0e6) });
     let mut direction = || {
@@ -245,7 +246,7 @@ fn holder(random: &mut Random, spec: &mut JobSpec) {
     if is_tied {
         (holder.stiffness_z_n_m, holder.damping_z_n_s_m) = (Some(0.0), along_z.1);
     }
-    if is_tied && random.chance(0.5) {
+    if may_rotate && random.chance(0.5) {
         let (stiffness, inertia) = (pin_n_m * lx * ly, pin_kg * lz * lz);
         let mut about = || {
             let scale = if random.chance(0.2) { 0.0 } else { random.log_between(1.0e-6, 1.0e2) };
@@ -276,7 +277,7 @@ fn clamp(random: &mut Random, spec: &mut JobSpec) {
     let side = random.pick(ClampSide::ALL);
     let axis = side.axis_across().unwrap_or(0);
     let row_m = pin.size_m[axis] / pin.elements[axis] as f64;
-    let rows = random.whole(0, pin.elements[axis]) as f64;
+    let rows = random.whole(usize::from(side == ClampSide::Collet), pin.elements[axis]) as f64;
     let anything = random.chance(0.05);
     spec.scene.clamp.side = side;
     spec.scene.clamp.width_m = row_m * if anything { random.between(0.0, 6.0) } else { rows };
