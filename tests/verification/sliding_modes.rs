@@ -178,7 +178,7 @@ impl Dense {
 fn modes_are_those_of_the_unreduced_problem() {
     let mut free_top = scene([3, 4, 3], 0.004, 0.3, 7.0);
     free_top.scene.top = TopFace::FreeInZ;
-    let mut trailing = scene([4, 5, 4], 0.003, 0.6, 2.0);
+    let mut trailing = scene([5, 6, 4], 0.0025, 0.6, 2.0);
     trailing.scene.clamp.side = ClampSide::TrailingEnd;
     compare(&[scene([4, 5, 4], 0.003, 0.1, 0.5), free_top, trailing]);
 }
