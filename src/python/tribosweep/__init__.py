@@ -14,11 +14,11 @@ Frames need pandas; `grid` and `inspect` also need xarray. A study is the path o
 
 from __future__ import annotations
 
-import hashlib
 import html
 import json
 import os
 import tempfile
+import uuid
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -50,6 +50,9 @@ __all__ = [
 ]
 
 Study = Union[str, "os.PathLike[str]", Mapping[str, Any]]
+# Without one it is that of TRIBOSWEEP_DB, or tribosweep.db in the working folder.
+Database = Union[str, "os.PathLike[str]", None]
+Names = Union[str, "os.PathLike[str]", Sequence[str]]
 
 class Record(dict[str, Any]):
     """A dictionary of results, which a notebook shows as a table of its single values."""
@@ -63,7 +66,7 @@ class Record(dict[str, Any]):
 def run(
     study: Study,
     *,
-    db: str | os.PathLike[str] = "tribosweep.db",
+    db: Database = None,
     out: str | os.PathLike[str] | None = None,
     preset: str | None = None,
     threads: int | None = None,
@@ -82,10 +85,9 @@ def run(
     _pandas()  # Without it nothing is begun.
     with _file_of(study) as path:
         changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
+        plan, _ = call(["validate", path, *changes, "--json", "--replace", *_database(db)])
         options = _options(db, out, threads, replace)
-        _, doubts = call(["run", path, *changes, *options], codes=WITH_RESULTS, progress_of=db)
-        # It repeats the warnings of the run.
-        plan, _ = call(["validate", path, *changes, "--json", "--replace", "--db", os.fspath(db)])
+        _, doubts = call(["run", path, *changes, *options], codes=WITH_RESULTS, progress_of=_path_of(db))
     jobs, further = _read(db, json.loads(plan)["study"])
     jobs.attrs["warnings"] = doubts + further
     _warn(doubts + further)
@@ -105,12 +107,11 @@ def read(db: str | os.PathLike[str], study: str) -> pandas.DataFrame:
     return jobs
 
 
-def solve(
-    study: Study, *, db: str | os.PathLike[str] | None = None, preset: str | None = None, **settings: Any
-) -> Record:
+def solve(study: Study, *, db: Database = None, preset: str | None = None, **settings: Any) -> Record:
     """Solves one job and returns its record. `settings` are parameters such as mu=0.4.
 
-    With a database `db` the result is stored there, in a study of its own, and found again by a later call. Otherwise nothing is stored.
+    With a database `db` the result is stored there, in a study `solved-` and the beginning of the job's key, and a later call finds it. Without
+    one nothing is stored.
 
     What the program warns of is an InputWarning.
 
@@ -120,36 +121,44 @@ def solve(
     with _file_of(study) as path:
         if db is None:
             text, doubts = call(["solve", path, *changes, "--json"])
+            record = Record(json.loads(text))
         else:
-            text, doubts = _stored(path, changes, db)
-    record = Record(json.loads(text))
+            record, doubts = _stored(path, changes, db)
     _warn(doubts)
     return record
 
 
-def _stored(path: str, changes: list[str], db: str | os.PathLike[str]) -> tuple[str, list[str]]:
-    """The record of the only job of a study, from a database or else solved and stored there."""
-    given = Path(path).read_text(encoding="utf-8") + "\n".join(changes)
-    name = "solved-" + hashlib.sha256(given.encode()).hexdigest()[:8]
+def _stored(path: str, changes: list[str], db: str | os.PathLike[str]) -> tuple[Record, list[str]]:
+    """Solves the only job of a study, or finds its record in the database."""
+    # No other call has this name, so that none replaces the study.
+    name = "solve-" + uuid.uuid4().hex
     options = [*changes, "--name", name]
-    plan, doubts = call(["validate", path, *options, "--json", "--replace", "--db", os.fspath(db)])
+    plan, doubts = call(["validate", path, *options, "--json", *_database(db)])
     jobs = json.loads(plan)["jobs"]
     if jobs != 1:
         raise Error(f"the study has {jobs} jobs; give each parameter that varies a value", 2)
     with tempfile.TemporaryDirectory() as folder:
-        call(["run", path, *options, *_options(db, folder, None, True)], codes=WITH_RESULTS, progress_of=db)
-    exported, _ = call(["export", name, "--all", "--format", "json", "--db", os.fspath(db)], codes=WITH_RESULTS)
+        call(["run", path, *options, *_options(db, folder, None, False)], codes=WITH_RESULTS, progress_of=db)
+    exported, _ = call(["export", *_database(db), "--all", "--format", "json", "--", name], codes=WITH_RESULTS)
     row = json.loads(exported)
+    try:
+        call(["rename", *_database(db), "--", name, "solved-" + row["job"][:16]])
+    except Error:
+        # An earlier call has stored this job.
+        call(["rm", *_database(db), "--", name])
     if row["status"] == "failed":
         raise Error(row["error"], 1)
-    shown, _ = call(["show", row["job"], "--json", "--db", os.fspath(db)])
-    return json.dumps(json.loads(shown)["record"]), doubts
+    shown, _ = call(["show", row["job"], "--json", *_database(db)])
+    record = json.loads(shown)["record"]
+    if record is None:
+        raise Error(f"the job {row['job']} has no result that can be read; its status is {row['status']}", 1)
+    return Record(record), doubts
 
 
 def stability(
     study: Study,
     *,
-    db: str | os.PathLike[str] = "tribosweep.db",
+    db: Database = None,
     out: str | os.PathLike[str] | None = None,
     preset: str | None = None,
     modes: int = 4,
@@ -164,10 +173,10 @@ def stability(
     Raises Error if the study or the database is refused, or if the computation was interrupted.
     """
     frames = _pandas()
-    options = _options(db, out, threads, replace) + ["--modes", str(modes), "--json"]
+    options = _options(db, out, threads, replace) + [f"--modes={modes}", "--json"]
     with _file_of(study) as path:
         changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
-        text, doubts = call(["stability", path, *changes, *options], codes=WITH_RESULTS, progress_of=db)
+        text, doubts = call(["stability", path, *changes, *options], codes=WITH_RESULTS, progress_of=_path_of(db))
     found: pandas.DataFrame = frames.DataFrame([json.loads(line) for line in text.splitlines()])
     found.attrs["warnings"] = doubts
     _warn(doubts)
@@ -178,11 +187,11 @@ def calibrate(
     study: Study,
     data: str | os.PathLike[str] | pandas.DataFrame | None = None,
     *,
-    free: Sequence[str] = (),
+    free: Names = (),
     at: Mapping[str, float] | None = None,
     discrepancy: Mapping[str, float] | None = None,
     most_points: int | None = None,
-    db: str | os.PathLike[str] = "tribosweep.db",
+    db: Database = None,
     out: str | os.PathLike[str] | None = None,
     preset: str | None = None,
     threads: int | None = None,
@@ -198,99 +207,133 @@ def calibrate(
     Raises Error if the study, the data or the database is refused, or if the run was interrupted.
     """
     options = _options(db, out, threads, replace) + ["--json"]
-    options += ["--free", ",".join(free)] if free else []
+    options += ["--free", ",".join(_list(free))] if free else []
     options += ["--at", ",".join(f"{name}={float(value)!r}" for name, value in at.items())] if at else []
     options += [part for name, share in (discrepancy or {}).items() for part in ("--discrepancy", f"{name}={float(share)!r}")]
-    options += [] if most_points is None else ["--most-points", str(most_points)]
+    options += [] if most_points is None else [f"--most-points={most_points}"]
     with _file_of(study) as path, _data_file(data) as measured:
         options += [] if measured is None else ["--data", measured]
         changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
-        text, doubts = call(["calibrate", path, *changes, *options], codes=WITH_RESULTS, progress_of=db)
+        text, doubts = call(["calibrate", path, *changes, *options], codes=WITH_RESULTS, progress_of=_path_of(db))
     found = Record(json.loads(text))
     _warn(doubts)
     return found
 
 
 def sensitivity(
-    studies: str | Sequence[str],
+    studies: Names,
     *,
-    of: Sequence[str] = ("mu_star", "frequency_hz"),
-    db: str | os.PathLike[str] = "tribosweep.db",
+    of: Names = ("mu_star", "frequency_hz"),
+    db: Database = None,
     out: str | os.PathLike[str] | None = None,
 ) -> pandas.DataFrame:
-    """How much each parameter of stored studies decides, from their own jobs: a row for each index of each parameter and quantity.
+    """Says how much each parameter of stored studies decides, and returns a row for each index of each parameter and quantity.
 
-    Raises Error if the database has no such study, or if a quantity is none.
+    The indices are those of the studies' own jobs. What the program says about them is in `attrs["notes"]`. A quantity without an index is an
+    InputWarning.
+
+    Raises Error if the database has no such study, or if `of` names something that is no quantity.
     """
-    names = [studies] if isinstance(studies, str) else list(studies)
-    table, messages = _reported(["sensitivity", *names, "--of", ",".join(of)], "sensitivity.csv", db, out)
-    _warn(doubts_of(messages))
+    quantities = _list(of)
+    command = ["sensitivity", "--of", ",".join(quantities)]
+    table, said, messages = _reported(command, _list(studies), "sensitivity.csv", db, out)
+    table.attrs["notes"] = [line.removeprefix("- ") for line in (said + messages).splitlines() if line.startswith("- ")]
+    doubts = doubts_of(messages)
+    doubts += [f"no index of {name}: see attrs['notes']" for name in quantities if name not in set(table["quantity"])]
+    table.attrs["warnings"] = doubts
+    _warn(doubts)
     return table
 
 
 def compare(
-    studies: str | Sequence[str],
+    studies: Names,
     data: str | os.PathLike[str] | pandas.DataFrame | None = None,
     *,
-    db: str | os.PathLike[str] = "tribosweep.db",
+    db: Database = None,
     out: str | os.PathLike[str] | None = None,
 ) -> pandas.DataFrame:
-    """Compares stored studies with each other and with measured points: a row for each difference from the first study.
+    """Compares stored studies with each other and with measured points, and returns a row for each difference from the first study.
 
-    `data` is a CSV file or a frame with the same columns, as for `calibrate`. The sentences of the verdict are in `attrs["verdict"]`.
+    `data` is a CSV file or a frame with the same columns, as for `calibrate`. The sentences of the verdict are in `attrs["verdict"]`. If no
+    point could be compared, that is an InputWarning.
 
-    Raises Error if the database has no such study, or if the data cannot be used.
+    Raises ValueError if there is only one study and no data, and Error if the database has no such study, or if the data cannot be used.
     """
-    names = [studies] if isinstance(studies, str) else list(studies)
+    names = _list(studies)
+    if len(names) < 2 and data is None:
+        raise ValueError("one study has nothing to be compared with; give a second study or data")
     with _data_file(data) as path:
         measured = [] if path is None else ["--data", path]
-        table, messages = _reported(["report", *names, *measured], "differences.csv", db, out)
+        table, _, messages = _reported(["report", *measured], names, "differences.csv", db, out)
     others = ("warning: ", "  ", "report written to ")
     table.attrs["verdict"] = [line for line in messages.splitlines() if line and not line.startswith(others)]
-    _warn(doubts_of(messages))
+    doubts = doubts_of(messages) + ([] if len(table) else ["no point of the first study could be compared"])
+    table.attrs["warnings"] = doubts
+    _warn(doubts)
     return table
 
 
 def inspect(
     study: Study,
     *,
+    job: str | None = None,
     preset: str | None = None,
-    nodes: Sequence[str] = (),
+    nodes: Names = (),
     cycles: int | None = None,
+    frames: int | None = None,
     fields: bool = False,
-    db: str | os.PathLike[str] = "tribosweep.db",
+    db: Database = None,
     out: str | os.PathLike[str] | None = None,
     **settings: Any,
 ) -> dict[str, xarray.Dataset]:
-    """Runs one job again and returns what its motion is like: `totals` over the time, `nodes` over node and time, and `face` over time and
-    node of the contact face. With `fields`, also those of all nodes of the pin over one cycle.
+    """Runs one job again and returns its motion: `totals` over the time, `nodes` over node and time, and `face` over time and node of the
+    contact face. With `fields`, the answer also has those of all nodes of the pin at the times of `frames`.
 
-    `nodes` are names such as "front_centre", or "X,Y" in mm. The attributes of `totals` have the key of the job and the period of its cycle.
+    The study may also be the name of a stored one. `job` is a key of one of its jobs; otherwise a parameter that `settings` does not give has the
+    value of the scene, which is an InputWarning if the study has no such job. `nodes` are names such as "front_centre", or "X,Y" in mm. The
+    attributes of `totals` have the key of the job, and the period of its cycle if it has one.
 
     Raises Error if the job is refused or fails.
     """
+    _pandas()
     from tribosweep import _inspection
 
-    options = [part for node in nodes for part in ("--node", node)]
-    options += [] if cycles is None else ["--cycles", str(cycles)]
+    options = [part for node in _list(nodes) for part in ("--node", node)]
+    options += [] if cycles is None else [f"--cycles={cycles}"]
+    options += [] if frames is None else [f"--frames={frames}"]
     options += [] if preset is None else ["--preset", preset]
-    values = [part for part in _settings(settings) if part != "--set"]
+    values = [part for part in _settings(settings) if part != "--set"] + ([] if job is None else [job])
     with _file_of(study) as path, _folder(out) as folder:
-        _, doubts = call(["inspect", path, *values, *options, "--db", os.fspath(db), "--out", folder])
+        _, messages = output_of(["inspect", *options, *_database(db), "--out", folder, "--", path, *values])
         found = _inspection.read(Path(folder), with_fields=fields)
+    doubts = doubts_of(messages)
+    doubts += [line for line in messages.splitlines() if line.startswith("this job is none of the points of ")]
     _warn(doubts)
     return found
 
 
 def _reported(
-    command: list[str], file: str, db: str | os.PathLike[str], out: str | os.PathLike[str] | None
-) -> tuple[pandas.DataFrame, str]:
-    """A table of the report that a command writes, and its messages."""
+    command: list[str], names: list[str], file: str, db: Database, out: str | os.PathLike[str] | None
+) -> tuple[pandas.DataFrame, str, str]:
+    """Reads a table of the report that a command writes. Also returns what the command prints, and its messages."""
     frames = _pandas()
     with _folder(out) as folder:
-        _, messages = output_of([*command, "--db", os.fspath(db), "--out", folder])
-        table: pandas.DataFrame = frames.read_csv(Path(folder) / file)
-    return table, messages
+        said, messages = output_of([*command, *_database(db), "--out", folder, "--", *names], codes=WITH_RESULTS)
+        table: pandas.DataFrame = frames.read_csv(Path(folder) / file, **_AS_WRITTEN)
+    return table, said, messages
+
+
+# Names stay texts, and only an empty cell is no value.
+_AS_WRITTEN: dict[str, Any] = {
+    "dtype": {name: str for name in ("study", "job", "source", "reference")},
+    "keep_default_na": False,
+    "na_values": [""],
+}
+
+
+def _list(names: Names) -> list[str]:
+    """Makes a list of several names, or of one."""
+    return [os.fspath(names)] if isinstance(names, (str, os.PathLike)) else list(names)
 
 
 @contextmanager
@@ -315,29 +358,33 @@ def _data_file(data: str | os.PathLike[str] | pandas.DataFrame | None) -> Iterat
         yield str(table)
 
 
-def validate(study: Study, *, preset: str | None = None, settings: Mapping[str, Any] | None = None) -> Record:
+def validate(
+    study: Study, *, db: Database = None, preset: str | None = None, settings: Mapping[str, Any] | None = None
+) -> Record:
     """Checks a study without running it, and returns what its jobs take.
 
     What the program warns of is an InputWarning. Raises Error with all mistakes if the study is refused.
     """
     with _file_of(study) as path:
         changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
-        text, doubts = call(["validate", path, *changes, "--json"])
+        text, doubts = call(["validate", path, *changes, "--json", "--replace", *_database(db)])
     found = Record(json.loads(text))
     _warn(doubts)
     return found
 
 
-def grid(jobs: pandas.DataFrame, values: Sequence[str], over: Sequence[str] | None = None) -> xarray.Dataset:
+def grid(jobs: pandas.DataFrame, values: Names, over: Names | None = None) -> xarray.Dataset:
     """Columns of jobs as arrays over their parameters; missing where the grid has no job.
 
     `over` are the parameters; by default ω and μ, as far as they vary. Raises ValueError if two jobs have the same values of them.
     """
     if over is None:
         over = [name for name in ("omega_rpm", "mu") if jobs[name].nunique() > 1] or ["omega_rpm"]
-    if jobs.duplicated(list(over)).any():
-        raise ValueError(f"several jobs have the same {', '.join(over)}; name all parameters that vary in `over`")
-    return jobs.set_index(list(over))[list(values)].to_xarray()
+    axes = _list(over)
+    if jobs.duplicated(axes).any():
+        raise ValueError(f"several jobs have the same {', '.join(axes)}; name all parameters that vary in `over`")
+    cube: xarray.Dataset = jobs.set_index(axes)[_list(values)].to_xarray()
+    return cube
 
 
 def _pandas() -> Any:
@@ -348,19 +395,31 @@ def _pandas() -> Any:
     return pandas
 
 
-def _options(
-    db: str | os.PathLike[str], out: str | os.PathLike[str] | None, threads: int | None, replace: bool
-) -> list[str]:
-    options = ["--db", os.fspath(db)]
+def _database(db: Database) -> list[str]:
+    return [] if db is None else ["--db", os.fspath(db)]
+
+
+def _path_of(db: Database) -> str:
+    return os.environ.get("TRIBOSWEEP_DB", "tribosweep.db") if db is None else os.fspath(db)
+
+
+def _options(db: Database, out: str | os.PathLike[str] | None, threads: int | None, replace: bool) -> list[str]:
+    options = _database(db)
     options += [] if out is None else ["--out", os.fspath(out)]
-    options += [] if threads is None else ["--threads", str(threads)]
+    options += [] if threads is None else [f"--threads={threads}"]
     return options + (["--replace"] if replace else [])
 
 
 def _plain(value: Any) -> Any:
-    """Numbers and arrays of numpy and pandas as those of JSON."""
+    """Makes numbers, arrays and paths those of JSON."""
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, range):
+        return list(value)
     if hasattr(value, "tolist"):
         return value.tolist()
+    if hasattr(value, "__array__"):
+        return value.__array__().tolist()
     raise TypeError(f"{value!r} is no number, text, list or dictionary")
 
 
@@ -380,7 +439,8 @@ def _with_whole_paths(study: Mapping[str, Any]) -> dict[str, Any]:
 
     def changed(value: Any, steps: list[str]) -> Any:
         if not steps:
-            return str(Path(value).resolve()) if isinstance(value, str) else value
+            is_file = isinstance(value, (str, os.PathLike)) and os.fspath(value) != ""
+            return str(Path(value).resolve()) if is_file else value
         if not isinstance(value, Mapping) or steps[0] not in value:
             return value
         return {**value, steps[0]: changed(value[steps[0]], steps[1:])}
@@ -398,13 +458,18 @@ def _file_of(study: Study) -> Iterator[str]:
         return
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "study.json"
-        path.write_text(json.dumps(_with_whole_paths({"name": "study", **study}), default=_plain), encoding="utf-8")
-        yield str(path)
+        text = json.dumps(_with_whole_paths({"name": "study", **study}), default=_plain, indent=1)
+        path.write_text(text, encoding="utf-8")
+        try:
+            yield str(path)
+        except Error as error:
+            # The file is gone when somebody reads this.
+            raise Error(str(error).replace(str(path), "study"), error.code) from None
 
 
-def _read(db: str | os.PathLike[str], study: str) -> tuple[pandas.DataFrame, list[str]]:
-    text, doubts = call(["export", study, "--all", "--db", os.fspath(db)], codes=WITH_RESULTS)
-    jobs: pandas.DataFrame = _pandas().read_csv(StringIO(text))
+def _read(db: Database, study: str) -> tuple[pandas.DataFrame, list[str]]:
+    text, doubts = call(["export", "--all", *_database(db), "--", study], codes=WITH_RESULTS)
+    jobs: pandas.DataFrame = _pandas().read_csv(StringIO(text), **_AS_WRITTEN)
     return jobs, doubts
 
 

@@ -20,14 +20,19 @@ def read(folder: Path, *, with_fields: bool) -> dict[str, xarray.Dataset]:
     """The histories, the contact face and, if asked for, the fields of an inspection in a folder."""
     inspection = json.loads((folder / "inspection.json").read_text(encoding="utf-8"))
     totals = pandas.read_csv(folder / "totals.csv").set_index("time_s").to_xarray()
-    totals.attrs = {"job": inspection["key"], "period_s": inspection["period_s"]}
+    totals.attrs = {"job": inspection["key"]}
+    if inspection["cycles"]:
+        totals.attrs["period_s"] = inspection["period_s"]
     names = [node["name"] for node in inspection["nodes"]]
     histories = [pandas.read_csv(folder / f"node_{name}.csv").set_index("time_s").to_xarray() for name in names]
     face = pandas.read_csv(folder / "face.csv").set_index(["time_s", "node"]).to_xarray()
     # The place of a node does not change.
     for name in ("x_m", "y_m"):
         face = face.assign_coords({name: face[name].isel(time_s=0, drop=True)})
-    found = {"totals": totals, "nodes": xarray.concat(histories, pandas.Index(names, name="node")), "face": face}
+    nodes = xarray.concat(histories, pandas.Index(names, name="node"))
+    for axis, name in enumerate(("x_m", "y_m")):
+        nodes = nodes.assign_coords({name: ("node", [node["at_m"][axis] for node in inspection["nodes"]])})
+    found = {"totals": totals, "nodes": nodes, "face": face}
     if with_fields:
         found["fields"] = _fields(folder)
     return found

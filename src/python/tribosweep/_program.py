@@ -20,8 +20,12 @@ class Error(Exception):
     """The program refused something. The text is its message; `code` is its exit code."""
 
     def __init__(self, message: str, code: int) -> None:
-        super().__init__(message)
+        # With both, an error can be sent from one process to another.
+        super().__init__(message, code)
         self.code = code
+
+    def __str__(self) -> str:
+        return str(self.args[0])
 
 
 class InputWarning(UserWarning):
@@ -76,6 +80,7 @@ def output_of(
     The jobs of the database `progress_of` are counted on standard error meanwhile. An interrupt of Python stops the program as Ctrl-C in a
     terminal does: running jobs keep their state.
     """
+    counts = None if progress_of is None or not _is_watched() else _Counts(progress_of)
     # The terminal's Ctrl-C would reach both processes; so it reaches this one alone, which passes it on.
     process = subprocess.Popen(
         [program(), *arguments],
@@ -85,27 +90,47 @@ def output_of(
         encoding="utf-8",
         start_new_session=True,
     )
-    counts = None if progress_of is None or not _is_watched() else _Counts(progress_of)
-    while True:
-        try:
-            out, messages = process.communicate(timeout=_LOOK_S if counts else None)
-            break
-        except subprocess.TimeoutExpired:
-            if counts:
-                counts.show()
-        except KeyboardInterrupt:
-            process.send_signal(signal.SIGINT)
-    if counts:
-        counts.clear()
+    is_interrupted = False
+    try:
+        while True:
+            try:
+                try:
+                    out, messages = process.communicate(timeout=_LOOK_S if counts else None)
+                    break
+                except subprocess.TimeoutExpired:
+                    if counts:
+                        counts.show()
+            except KeyboardInterrupt:
+                is_interrupted = True
+                process.send_signal(signal.SIGINT)
+    except BaseException:
+        _stop(process)
+        raise
+    finally:
+        if counts:
+            counts.clear()
+    if is_interrupted and process.returncode in codes:
+        raise KeyboardInterrupt
     if process.returncode not in codes:
         message = "\n".join(line for line in messages.splitlines() if line)
-        raise Error(message or f"the program ended with code {process.returncode}", process.returncode)
+        code = 3 if is_interrupted else process.returncode
+        raise Error(message or ("interrupted" if is_interrupted else f"the program ended with code {code}"), code)
     return out, messages
+
+
+def _stop(process: subprocess.Popen[str]) -> None:
+    """Ends the program in order, and at once if that takes long."""
+    process.send_signal(signal.SIGINT)
+    try:
+        process.wait(timeout=10)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
 
 
 def _is_watched() -> bool:
     """Whether somebody sees standard error: in a terminal or a notebook."""
-    return sys.stderr.isatty() or "ipykernel" in sys.modules
+    return sys.stderr is not None and (sys.stderr.isatty() or "ipykernel" in sys.modules)
 
 
 class _Counts:
@@ -118,7 +143,12 @@ class _Counts:
 
     def show(self) -> None:
         done = subprocess.run(
-            [program(), "status", "--json", "--db", self.db], capture_output=True, text=True, encoding="utf-8", check=False
+            [program(), "status", "--json", "--db", self.db],
+            capture_output=True,
+            text=True,
+            encoding="utf-8",
+            check=False,
+            start_new_session=True,
         )
         # The database may not be there yet.
         if done.returncode != 0:
@@ -128,7 +158,7 @@ class _Counts:
         ended = sum(jobs["total"] - jobs["pending"] - jobs["running"] for jobs in open_ones)
         total = sum(jobs["total"] for jobs in open_ones)
         if total > 0:
-            self.write(f"{ended} of {total} jobs, {time.monotonic() - self.begun:.0f} s")
+            self.write(f"{ended} of {total} jobs of the open studies, {time.monotonic() - self.begun:.0f} s")
 
     def write(self, text: str) -> None:
         print("\r" + text.ljust(self.width), end="", file=sys.stderr, flush=True)
