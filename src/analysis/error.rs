@@ -1,7 +1,7 @@
 //! Why a job has no record.
 
 use crate::solver::SolverError;
-use crate::spec::{JobSpec, Rise, Violations};
+use crate::spec::{JobSpec, Rise, Violations, short};
 use crate::stability::StabilityError;
 use thiserror::Error;
 
@@ -35,8 +35,9 @@ pub enum JobError {
     },
     /// Friction rises so steeply with the slip speed that the explicit step cannot follow it.
     #[error(
-        "{field}: the friction coefficient rises by {slope_s_m:.3} per m/s of slip, and a time step of {time_step_s:.3e} s carries \
-         at most {most_s_m:.3} under the mean pressure of this load; give a flatter curve, a smaller load or a smaller time step"
+        "{field}: the friction coefficient rises by {} per m/s of slip, and a time step of {} s carries \
+         at most {} under the mean pressure of this load; give a flatter curve, a smaller load or a smaller time step",
+        short(*.slope_s_m), short(*.time_step_s), short(*.most_s_m)
     )]
     RiseTooSteep {
         /// The field of the rise.

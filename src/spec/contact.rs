@@ -263,7 +263,7 @@ impl Contact {
 
     /// The coefficient of fast slip that the table of the law has itself; `None` if the law has no table.
     pub fn table_mu(&self) -> Option<f64> {
-        self.mu_of_speed.fast().filter(|_| self.law == FrictionLaw::Table)
+        self.mu_of_speed.fast().filter(|mu| self.law == FrictionLaw::Table && *mu > 0.0)
     }
 
     /// What `mu` makes of the values of the table; NaN without a table.
@@ -289,7 +289,8 @@ impl Contact {
         found.within("scene.contact.mu", self.mu);
         for coefficient in &COEFFICIENTS {
             let values = (coefficient.values)(self);
-            for value in values {
+            // A table says itself which of its pairs is wrong.
+            for value in values.iter().filter(|_| coefficient.number == coefficient.field) {
                 found.within(coefficient.number, *value);
             }
             if values.is_empty() && coefficient.is_needed && self.law.uses(coefficient) {

@@ -120,16 +120,18 @@ impl Holder {
         })
     }
 
-    /// Gives each spring the damper of this share of critical damping, with a rigid pin of this mass and of this height \[m\] below the axes of
-    /// rotation. Returns whether there is a spring.
-    pub fn damp(&mut self, ratio: f64, pin_kg: f64, height_m: f64) -> bool {
+    /// Gives each spring the damper of this share of critical damping, with a rigid uniform pin of this mass and of these edges \[m\] below the
+    /// axes of rotation. Returns whether there is a spring.
+    pub fn damp(&mut self, ratio: f64, pin_kg: f64, extent_m: [f64; 3]) -> bool {
         let damper = |way: Option<HolderDirection>, pin: f64| {
             let way = way.filter(|way| way.stiffness_n_m > 0.0)?;
             Some(2.0 * ratio * (way.stiffness_n_m * (way.mass_kg + pin)).sqrt())
         };
         let [x, y, z] = self.directions().map(|way| damper(way, pin_kg));
-        let rod = pin_kg * height_m * height_m / 3.0;
-        let [about_x, about_y] = self.rotations().map(|way| damper(way, rod));
+        let [x_m, y_m, height_m] = extent_m;
+        let inertia = |across_m: f64| pin_kg * (height_m * height_m / 3.0 + across_m * across_m / 12.0);
+        let [way_x, way_y] = self.rotations();
+        let [about_x, about_y] = [damper(way_x, inertia(y_m)), damper(way_y, inertia(x_m))];
         for (field, damper) in [
             (&mut self.damping_x_n_s_m, x),
             (&mut self.damping_y_n_s_m, y),

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Pairs [slip speed (m/s), friction coefficient], from rest on: the first speed is 0, and each is higher than the one before. A study may
-/// name a CSV file instead, whose first two columns they are.
+/// name a CSV file instead, whose two columns they are.
 ///
 /// Between the pairs the coefficient follows cubic polynomials with a continuous slope, which never leave the range of their two ends
 /// (F. N. Fritsch and J. Butland, *SIAM J. Sci. Stat. Comput.* 5, 1984, 300–304). It is constant beyond the last speed, and its slope is zero
@@ -18,6 +18,9 @@ pub struct MuOfSpeed(pub Vec<[f64; 2]>);
 
 /// Most pairs of a table. Every node evaluates all of them in every step.
 pub const MOST_PAIRS: usize = 16;
+
+/// Least distance of two speeds of a table \[m/s\]. No instrument resolves less, and the reciprocals of much smaller ones overflow.
+const LEAST_STEP_M_S: f64 = 1.0e-12;
 
 /// The coefficient between two speeds: the cubic polynomial Σ `powers[k]` tᵏ⁺¹ of t = (v − `from_m_s`)/`width_m_s` from 0 to 1, added to
 /// the value at `from_m_s`.
@@ -132,8 +135,13 @@ impl MuOfSpeed {
             found.add(FIELD, format!("{} pairs", pairs.len()), right);
             return;
         }
-        for (index, &[speed_m_s, _]) in pairs.iter().enumerate() {
+        for (index, &[speed_m_s, mu]) in pairs.iter().enumerate() {
             let field = format!("{FIELD}[{index}]");
+            let are_numbers =
+                found.within(&format!("{field}[0]"), speed_m_s) && found.within(&format!("{field}[1]"), mu);
+            if !are_numbers {
+                continue;
+            }
             let before = index.checked_sub(1).map(|before| pairs[before][0]);
             match before {
                 None if speed_m_s > 0.0 => {
@@ -141,6 +149,10 @@ impl MuOfSpeed {
                 }
                 Some(before) if speed_m_s == before => {
                     found.add(&field, readable(speed_m_s), "one coefficient for each speed");
+                }
+                Some(before) if speed_m_s > before && speed_m_s - before < LEAST_STEP_M_S => {
+                    let right = format!("a speed at least {LEAST_STEP_M_S:e} m/s above the one before");
+                    found.add(&field, readable(speed_m_s), right);
                 }
                 Some(before) if speed_m_s < before => {
                     found.add(&field, readable(speed_m_s), "speeds that ascend");

@@ -174,6 +174,26 @@ impl Pin {
         (self.element_count() / faces as f64).max(1.0)
     }
 
+    /// Mass \[kg\] of a block or a cylinder with its regions; `None` for a mesh from a file.
+    pub fn mass_kg(&self) -> Option<f64> {
+        if self.shape == Shape::Mesh {
+            return None;
+        }
+        let height_m = self.extent_m()[2];
+        let mut ends: Vec<f64> = self.regions.iter().filter_map(|region| region.above_m).collect();
+        ends.extend([0.0, height_m]);
+        ends.retain(|end_m| (0.0..=height_m).contains(end_m));
+        ends.sort_by(f64::total_cmp);
+        let density_kg_m3 = |middle_m: f64| {
+            let is_inside = |region: &&Region| region.above_m.is_some_and(|above_m| middle_m > above_m);
+            // Of several regions the last one holds.
+            self.regions.iter().rfind(is_inside).map_or(self.density_kg_m3, |region| region.density_kg_m3)
+        };
+        let per_area =
+            ends.windows(2).map(|part| density_kg_m3(0.5 * (part[0] + part[1])) * (part[1] - part[0]));
+        Some(self.base_area_m2() * per_area.sum::<f64>())
+    }
+
     /// Mean volume \[m³\] of an element; of a mesh from a file, that of the box around it over its elements.
     pub fn element_volume_m3(&self) -> f64 {
         match self.shape {

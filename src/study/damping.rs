@@ -141,10 +141,13 @@ fn damp_holder(ratio: f64, spec: &mut JobSpec, gives: impl Fn(&str) -> bool) -> 
         return Err(refused(FIELD, ratio, expected));
     }
     let pin = &spec.scene.pin;
-    let height_m = pin.extent_m()[2];
-    let pin_kg = pin.density_kg_m3 * pin.base_area_m2() * height_m;
-    if !spec.scene.holder.damp(ratio, pin_kg, height_m) {
-        let expected = "absent without a spring of the holder, such as scene.holder.stiffness_y_n_m";
+    let Some(pin_kg) = pin.mass_kg() else {
+        let expected = "the dampers themselves for a mesh from a file, whose mass is not known here: scene.holder.damping_y_n_s_m";
+        return Err(refused(FIELD, ratio, expected));
+    };
+    let extent_m = pin.extent_m();
+    if !spec.scene.holder.damp(ratio, pin_kg, extent_m) {
+        let expected = "no ratio without a spring of the holder; give a spring, such as scene.holder.stiffness_y_n_m, or leave this out";
         return Err(refused(FIELD, ratio, expected));
     }
     Ok(())

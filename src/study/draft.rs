@@ -1,6 +1,7 @@
 //! The draft of a job: values of fields as JSON, and which of them are given.
 
 use super::covered::is_set_by_presets;
+use super::damping::DAMPERS;
 use super::derive::Ties;
 use super::file::StudyFile;
 use super::parameter::{PARAMETERS, Parameter};
@@ -85,10 +86,14 @@ impl Draft {
             // What a preset or a default sets later is not known here.
             let has_table =
                 tied.pointer("/scene/contact/law").is_some_and(|law| law == FrictionLaw::Table.name());
+            let has_speed = tied.pointer("/sliding_speed_m_s").is_some_and(|speed| !speed.is_null());
+            let has_ratio = tied.pointer("/damping/holder_ratio").is_some_and(|ratio| !ratio.is_null());
             let is_known = |own: &Parameter| {
                 let is_set_later = is_set_by_presets(own)
                     || time_defaults::FIELDS.contains(&own.name)
-                    || has_table && own.name == "mu";
+                    || has_table && own.name == "mu"
+                    || has_speed && own.name == "omega_rpm"
+                    || has_ratio && DAMPERS.contains(&own.name);
                 self.given.contains(own.name) || !is_set_later
             };
             violations.extend(self.ties.apply(tied.to_mut(), is_known).err().into_iter().flatten());
@@ -134,7 +139,8 @@ impl Draft {
             spec.scene.contact.mu = own;
         }
         time_defaults::fill(&mut spec, gives);
-        spec.scene.take_largest_of_program(["omega_rpm", "load_n"].map(gives));
+        let gives_omega = gives("omega_rpm") || sliding_speed_m_s.is_some();
+        spec.scene.take_largest_of_program([gives_omega, gives("load_n")]);
         violations.extend(spec.check().err().into_iter().flat_map(|found| found.0));
         Resolved { spec, violations }
     }

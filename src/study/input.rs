@@ -31,6 +31,9 @@ pub(super) fn values_of(spec: &JobSpec, parameters: impl Iterator<Item = &'stati
     let unused = without_effect(spec);
     let mut spec = spec.clone();
     spec.scene.contact = spec.scene.contact.in_use();
+    let pairs = spec.scene.contact.mu_of_speed.0.iter();
+    let pairs: Vec<String> = pairs.map(|[speed_m_s, mu]| format!("{speed_m_s}: {mu}")).collect();
+    let table = if pairs.is_empty() { String::new() } else { format!("table {{{}}}", pairs.join(", ")) };
     let job = encode(&spec);
     let is_below = |pointer: &str, field: &str| {
         pointer.strip_prefix(field).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
@@ -38,7 +41,9 @@ pub(super) fn values_of(spec: &JobSpec, parameters: impl Iterator<Item = &'stati
     let input = |parameter: &'static Parameter| {
         let has_effect = !unused.iter().any(|field| is_below(parameter.pointer, field));
         let value = at(&job, parameter.pointer).filter(|_| has_effect)?.clone();
-        Some(Input { parameter, value })
+        // No parameter has pairs for values, so the law has those of its table.
+        let is_table = parameter.name == "friction_law" && !table.is_empty();
+        Some(Input { parameter, value: if is_table { Value::from(table.as_str()) } else { value } })
     };
     parameters.filter_map(input).collect()
 }

@@ -26,12 +26,12 @@ const HEIGHT: Entry = Entry {
     plural: "heights",
     expected: "a height in metres",
     most: MOST_HEIGHTS,
-    may_have_names: false,
+    is_table: false,
 };
 
 /// A file may have more pairs than a table: the refusal then says what to do.
 const PAIR: Entry =
-    Entry { one: "number", plural: "numbers", expected: "a number", most: 20_000, may_have_names: true };
+    Entry { one: "number", plural: "numbers", expected: "a number", most: 20_000, is_table: true };
 
 /// The text of the study with heights in place of the file's name; `None` if it names none. The file's path is relative to
 /// the folder of the study, or to the working directory for standard input.

@@ -11,8 +11,9 @@ pub(super) struct Entry {
     pub expected: &'static str,
     /// Most numbers of a file.
     pub most: usize,
-    /// Whether the first line may have the names of the columns.
-    pub may_have_names: bool,
+    /// Whether it is a table as spreadsheets write it: the first line may have the names of the columns, and where semicolons separate,
+    /// numbers may have a decimal comma.
+    pub is_table: bool,
 }
 
 /// The numbers of a text, a row for each line. Empty lines and lines that begin with `#` are passed over. The error is a line and
@@ -21,14 +22,16 @@ pub(super) fn rows(text: &str, entry: &Entry) -> Result<Vec<Vec<f64>>, (usize, S
     let mut rows: Vec<Vec<f64>> = Vec::new();
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut last = 0;
-    let mut may_be_names = entry.may_have_names;
+    let mut may_be_names = entry.is_table;
     for (index, line) in text.lines().enumerate() {
         let (number, line) = (index + 1, line.trim());
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
-        let entries = entries(line);
-        if std::mem::take(&mut may_be_names) && entries.iter().all(|text| finite(text).is_none()) {
+        let entries = entries(line, entry);
+        if std::mem::take(&mut may_be_names)
+            && entries.iter().all(|text| text.replace(',', ".").parse::<f64>().is_err())
+        {
             continue;
         }
         let row = row(&entries, entry).map_err(|message| (number, message))?;
@@ -55,15 +58,16 @@ pub(super) fn rows(text: &str, entry: &Entry) -> Result<Vec<Vec<f64>>, (usize, S
 }
 
 /// The entries of a line. Many programs end each line with a separator.
-fn entries(line: &str) -> Vec<&str> {
-    let separator = [';', ','].into_iter().find(|separator| line.contains(*separator));
-    match separator {
-        Some(separator) => line.trim_end_matches(separator).split(separator).map(str::trim).collect(),
-        None => line.split_whitespace().collect(),
+fn entries<'a>(line: &'a str, entry: &Entry) -> Vec<&'a str> {
+    let separators: &[char] = if entry.is_table && line.contains(';') { &[';'] } else { &[',', ';'] };
+    if line.contains(separators) {
+        line.trim_end_matches(separators).split(separators).map(str::trim).collect()
+    } else {
+        line.split_whitespace().collect()
     }
 }
 
-/// A number, which has a decimal comma where semicolons separate.
+/// A number, which may have a decimal comma.
 fn finite(text: &str) -> Option<f64> {
     text.replace(',', ".").parse().ok().filter(|number: &f64| number.is_finite())
 }
@@ -86,7 +90,7 @@ mod tests {
         plural: "heights",
         expected: "a height in metres",
         most: 65_536,
-        may_have_names: false,
+        is_table: false,
     };
 
     /// Protects: every way to separate numbers, and that a bad line is named.
@@ -96,7 +100,6 @@ mod tests {
             "1e-6, 2e-6,3e-6\n4e-6,5e-6,6e-6\n",
             "# heights\r\n1e-6 2e-6\t3e-6\r\n\r\n 4e-6 5e-6 6e-6",
             "\u{feff}1e-6;2e-6;3e-6;\n4e-6; 5e-6; 6e-6;",
-            "0,1e-5;0,2e-5;0,3e-5\n4e-6;5,0e-6;6e-6",
         ];
         for text in good {
             assert_eq!(rows(text, &HEIGHT).unwrap(), [[1e-6, 2e-6, 3e-6], [4e-6, 5e-6, 6e-6]], "{text:?}");
@@ -122,7 +125,7 @@ mod tests {
     /// Protects: names of columns are passed over where a file may have them, once and not among numbers.
     #[test]
     fn a_first_line_of_names_is_passed_over() {
-        let entry = Entry { may_have_names: true, ..HEIGHT };
+        let entry = Entry { is_table: true, ..HEIGHT };
         assert_eq!(rows("speed, mu\n0,1\n2,3", &entry).unwrap(), [[0.0, 1.0], [2.0, 3.0]]);
         for (text, line) in
             [("speed, mu\nm/s, -\n0,1\n2,3", 2), ("0,1\nspeed, mu\n2,3", 2), ("speed, 1\n2,3", 1)]

@@ -167,7 +167,7 @@ fn convert(digits: &str, given: &str, unit: &str) -> Result<f64, String> {
     };
     if dimension != wanted.dimension {
         let hint = if unit == "rpm" && dimension == [0, 1, -1, 0] {
-            "; a sliding speed is sliding_speed_m_s"
+            "; a study has the field sliding_speed_m_s for a sliding speed"
         } else {
             ""
         };
@@ -312,7 +312,7 @@ mod tests {
         for (text, unit, expected) in [
             ("8 kg", "m", "`kg` is another kind of unit; expected a number in m"),
             ("8 furlong", "m", "`furlong` is no known unit; expected a number in m"),
-            ("0.1 m/s", "rpm", "a sliding speed is sliding_speed_m_s"),
+            ("0.1 m/s", "rpm", "sliding_speed_m_s for a sliding speed"),
             ("8,5 mm", "m", "a number has a decimal point: 8.5 mm"),
             ("8 m/", "m", "no known unit"),
             ("30 N/12", "N", "`12` is no known unit"),

@@ -52,12 +52,12 @@ pub(super) fn averaged(file: MeasuredFile, bins: usize) -> Option<MeasuredFile> 
     }
     let filled = groups.values().flatten().filter(|rows| !rows.is_empty());
     let rows: Vec<JobRow> = filled.map(|rows| mean(rows, along, &of)).collect();
-    let words = format!(
-        "{} of its rows are {} means in {bins} bins of {along}, with the standard deviation in a bin as a part of the error",
-        values().count(),
-        rows.len()
-    );
-    let left_out = Some(file.left_out.map_or_else(|| words.clone(), |others| format!("{others}; {words}")));
+    let without = file.rows.len() - values().count();
+    let words = (without > 0).then(|| format!("{without} rows have no {along} and are in no bin"));
+    let left_out = match (file.left_out, words) {
+        (Some(others), Some(words)) => Some(format!("{others}; {words}")),
+        (others, words) => others.or(words),
+    };
     Some(MeasuredFile { parameters: file.parameters, rows, left_out })
 }
 
@@ -95,7 +95,7 @@ fn mean(rows: &[&JobRow], along: &str, of: &impl Fn(&JobRow) -> Option<f64>) -> 
     let values = by_name.into_iter().map(|(name, own)| {
         let numbers: Vec<f64> = own.iter().map(|one| one.value).collect();
         let given: Vec<f64> = own.iter().filter_map(|one| one.error).collect();
-        let given = (given.len() == own.len()).then(|| average(&given));
+        let given = (!given.is_empty()).then(|| average(&given));
         let error = match (deviation(&numbers), given) {
             (Some(deviation), given) => Some(libm::hypot(deviation, given.unwrap_or(0.0))),
             (None, given) => given,
@@ -116,11 +116,11 @@ fn average(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The standard deviation; `None` of fewer than two values.
+/// The standard deviation; `None` of fewer than two different values, which say nothing about it.
 fn deviation(values: &[f64]) -> Option<f64> {
     let mean = average(values);
     let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
-    (values.len() > 1).then(|| (squares / (values.len() - 1) as f64).sqrt())
+    (values.len() > 1 && squares > 0.0).then(|| (squares / (values.len() - 1) as f64).sqrt())
 }
 
 #[cfg(test)]

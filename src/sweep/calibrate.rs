@@ -81,8 +81,13 @@ pub fn read_calibration_data(path: &Path, count: Option<usize>) -> Result<Calibr
             ("frequency_error_hz", lacks(own.frequency_hz, own.frequency_error_hz)),
         ] {
             if is_missing {
+                let why = if count.is_some() {
+                    " in the bin that begins with it, which has no scatter: give fewer bins, or errors"
+                } else {
+                    ""
+                };
                 return refuse(format!(
-                    "line {}: {name} is missing; without the error of a value, nothing can be ruled out by it",
+                    "line {}: {name} is missing{why}; without the error of a value, nothing can be ruled out by it",
                     line(&file, number)
                 ));
             }

@@ -103,11 +103,12 @@ fn a_table_that_is_no_function_is_refused() {
             json!([[0.01, 0.5], [0.1, 0.4]]),
             "scene.contact.mu_of_speed[0] = 0.01: expected the speed 0, with the coefficient at rest",
         ),
+        (json!([[0, 0.5], [1e-300, 0.4], [1, 0.3]]), "a speed at least 1e-12 m/s above the one before"),
         (json!([[0, 0.5]]), "1 pairs: expected from 2 to 16 pairs"),
         (json!([[0, 0.5], [1, 0]]), "expected a coefficient > 0 at the last speed"),
         (
             json!([[0, -0.5], [1, 0.3]]),
-            "expected pairs of a slip speed >= 0 m/s and a friction coefficient >= 0",
+            "scene.contact.mu_of_speed[0][1] = -0.5: expected pairs of a slip speed >= 0 m/s and a friction coefficient >= 0",
         ),
         (json!([[0, 0.5, 1], [1, 0.3, 1]]), "scene.contact.mu_of_speed[0]"),
         (json!(0.3), "scene.contact.mu_of_speed"),
@@ -138,4 +139,16 @@ fn another_law_does_not_use_it() {
         "{warnings:?}"
     );
     assert!(parsed.expand("1").unwrap()[0].spec.scene.contact.in_use().mu_of_speed.is_empty());
+}
+
+/// Protects: studies that differ in their tables alone do not pass for the same, and the inputs of a job have its table.
+#[test]
+fn a_table_is_an_input() {
+    let law = |table: &Value| {
+        let study = parsed(&with_table(table)).unwrap();
+        let inputs = tribosweep::study::inputs(&study.expand("1").unwrap()[0].spec);
+        inputs.iter().find(|input| input.parameter.name == "friction_law").unwrap().value.clone()
+    };
+    assert_eq!(law(&json!([[0, 0.5], [1, 0.3]])), "table {0: 0.5, 1: 0.3}");
+    assert_ne!(law(&json!([[0, 0.5], [1, 0.3]])), law(&json!([[0, 0.6], [1, 0.3]])));
 }

@@ -66,7 +66,9 @@ const LITTLE: f64 = 0.995;
 
 fn friction(rows: &[&JobRow]) -> Option<String> {
     let (row, record) = lowest(rows)?;
-    if record.mu_star / row.parameters.mu() > LITTLE {
+    let largest = rows.iter().filter_map(|row| Some(row.record()?.mu_star / row.parameters.mu()));
+    let is_mu = record.mu_star / row.parameters.mu() > LITTLE && largest.fold(0.0, f64::max) < 2.0 - LITTLE;
+    if is_mu {
         return Some("μ* is μ within half a per cent in all jobs.".to_owned());
     }
     let mu_star = digits::with_error(MU_STAR, row);

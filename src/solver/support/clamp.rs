@@ -44,13 +44,15 @@ pub fn clamped_strip(mesh: &PinMesh, clamp: &Clamp) -> Result<ClampedStrip, Solv
     let width_m = rows.at_m[last_row];
     // The relative tolerance of 1e-12 covers the rounding of decimal widths.
     if (width_m - clamp.width_m).abs() > WIDTH_TOLERANCE * clamp.width_m * (1.0 + 1e-12) {
+        // The rows that a collet can end at lie between the top face and the contact face.
+        let (first, last) = if is_collet { (1, rows.at_m.len() - 2) } else { (0, rows.at_m.len() - 1) };
         let below = rows.at_m.iter().filter(|at| **at <= clamp.width_m).count().saturating_sub(1);
         return Err(SolverError::ClampOffMesh {
             width_m: clamp.width_m,
             elements: rows.at_m.len() - 1,
             length_m: mesh.size_m()[axis],
-            below_m: rows.at_m[below],
-            above_m: rows.at_m[(below + 1).min(rows.at_m.len() - 1)],
+            below_m: rows.at_m[below.max(first).min(last)],
+            above_m: rows.at_m[(below + 1).max(first).min(last)],
         });
     }
     let held = |(_, row): &(usize, usize)| {

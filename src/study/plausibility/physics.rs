@@ -218,10 +218,13 @@ fn friction(spec: &JobSpec) -> Option<Doubt> {
 fn clamp(spec: &JobSpec) -> Option<Doubt> {
     let (pin, clamp) = (&spec.scene.pin, &spec.scene.clamp);
     let axis = clamp.side.axis_across().filter(|_| pin.shape != Shape::Mesh)?;
+    let is_collet = clamp.side == ClampSide::Collet;
     let strips = if matches!(clamp.side, ClampSide::BothSides | ClampSide::BothEnds) { 2.0 } else { 1.0 };
     let (width_m, whole_m) = if pin.shape == Shape::Block {
         let edge_m = pin.element_edges_m()[axis];
-        let held_m = (clamp.width_m / edge_m).round() * edge_m;
+        let rows = (clamp.width_m / edge_m).round();
+        // A collet leaves the contact face free.
+        let held_m = if is_collet { rows.min(pin.elements[axis] as f64 - 1.0) } else { rows } * edge_m;
         // Of two strips, the last rows are neighbours, and an element lies between them.
         (held_m, pin.extent_m()[axis] - (strips - 1.0) * edge_m)
     } else {
@@ -239,7 +242,7 @@ fn clamp(spec: &JobSpec) -> Option<Doubt> {
         let message = "only the outermost row of nodes is held, so that what is held depends on the mesh";
         return Some(doubt(&["scene.clamp.width_m"], message));
     }
-    if share > 1.0 - 1.0e-9 {
+    if share > 1.0 - 1.0e-9 && !is_collet {
         let message = "the whole top face is held, as with the side `whole_top`";
         return Some(doubt(&["scene.clamp.width_m", "scene.clamp.side"], message));
     }
@@ -249,7 +252,11 @@ fn clamp(spec: &JobSpec) -> Option<Doubt> {
         size: moved.abs(),
         ..doubt(
             &["scene.clamp.width_m", "scene.pin.elements"],
-            &format!("this mesh holds a strip of {} m, up to its nearest row of nodes", short(width_m)),
+            &format!(
+                "this mesh holds {} of {} m, up to its nearest row of nodes",
+                if is_collet { "a length" } else { "a strip" },
+                short(width_m)
+            ),
         )
     })
 }
