@@ -139,12 +139,6 @@ impl Outline {
         self.grid.axes.retain(|axis| !axis.parameter.overlaps(parameter));
         self.grid.samples =
             self.grid.samples.take().and_then(|samples| samples.without(|own| own.overlaps(parameter)));
-        if parameter.name == "omega_rpm"
-            && let Some(study) = self.document.as_object_mut()
-        {
-            // It says the same, and is no parameter itself.
-            study.remove("sliding_speed_m_s");
-        }
         let (parent, name) = parameter.pointer.rsplit_once('/').unwrap_or_default();
         if let Some(Value::Object(fields)) = self.document.pointer_mut(parent) {
             fields.remove(name);
@@ -159,6 +153,12 @@ impl Outline {
 
     fn apply(&mut self, setting: &Setting, forms: Forms, template: &Value) -> Vec<Problem> {
         let Setting { parameter, value, .. } = setting;
+        if parameter.name == "omega_rpm"
+            && let Some(study) = self.document.as_object_mut()
+        {
+            // It says the same, and is no parameter itself.
+            study.remove("sliding_speed_m_s");
+        }
         // An axis of whole meshes with a single mesh is that mesh, of which a part is set now.
         while let Some(place) = self.grid.axes.iter().position(|axis| {
             axis.values.len() == 1

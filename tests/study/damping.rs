@@ -210,6 +210,11 @@ fn a_sliding_speed_gives_omega() {
         let speed_m_s = job.spec.scene.disk.omega_rpm * 2.0 * PI / 60.0 * radius_m;
         assert!((speed_m_s / 0.3 - 1.0).abs() < 1e-14, "{speed_m_s}");
     }
+    let settings = vec![("omega_rpm".to_owned(), "[5, 7]".to_owned())];
+    let changes = tribosweep::study::Changes { settings, ..Default::default() };
+    let set = Study::parse_changed(r#"{ "sliding_speed_m_s": 0.3 }"#, "x.json", &changes).unwrap();
+    let rates = set.expand("1").unwrap().iter().map(|job| job.spec.scene.disk.omega_rpm).collect::<Vec<_>>();
+    assert_eq!(rates, [5.0, 7.0], "a setting takes the place of the speed");
     for (text, expected) in [
         (
             r#"{ "sliding_speed_m_s": 0.3, "scene": { "disk": { "omega_rpm": 7 } } }"#,
