@@ -114,6 +114,8 @@ assert tribosweep.validate(with_table, settings={"mu": 0.3})["jobs"] == 3
 
 # An interrupt of Python ends the program in order: what is done stays, and the same call goes on.
 import signal, threading
+# A shell starts what it puts into the background without this.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 long = {**study, "name": "long", "run": {"limit_s": 0.5, "stop_early": False}, "grid": {"mu": [0.4], "omega_rpm": list(range(1, 100))}}
 threading.Timer(2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 try:
