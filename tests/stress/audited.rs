@@ -78,6 +78,7 @@ pub struct Audited<'a, R: Rounded = f64> {
 
 impl<'a, R: Rounded> Audited<'a, R> {
     /// A run from `state` (before its first step).
+    #[expect(clippy::large_types_passed_by_value, reason = "a test makes one, whose size does not matter")]
     pub fn new(model: &'a Model, drive: Drive, state: StateOf<1, R>) -> Self {
         let mesh = model.mesh();
         let field = || vec![0.0; state.u.len()];

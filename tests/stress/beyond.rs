@@ -24,6 +24,7 @@ fn integrators() -> impl Iterator<Item = (f64, f64)> {
 
 /// Runs with the guard as a job does. Returns the step at which the guard stopped the run, the node and the
 /// message.
+#[expect(clippy::large_types_passed_by_value, reason = "a test makes one, whose size does not matter")]
 fn guarded(model: &Model, drive: Drive, mut state: State<1>, steps: u64) -> Option<(u64, usize, String)> {
     let mut ledger = EnergyLedger::new(model, INTERVAL);
     for n in 0..steps {

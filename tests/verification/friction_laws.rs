@@ -38,6 +38,7 @@ fn oscillator(stiffness_n_m: f64, time_step_s: f64) -> Model {
     system.model(0.0, TimeStep::Given(time_step_s))
 }
 
+#[expect(clippy::large_types_passed_by_value, reason = "a test makes one, whose size does not matter")]
 fn on_belt(law: Law, belt_speed_m_s: f64) -> Drive {
     Drive { law, rate: belt_speed_m_s, force_n: NORMAL_N, ramp_s: 0.0 }
 }
@@ -91,6 +92,7 @@ fn a_static_coefficient_causes_stick_slip() {
 const PERIODS: usize = 40;
 
 /// The growth rate [1/s] of a small oscillation about steady sliding at the speed of the belt, over three periods.
+#[expect(clippy::large_types_passed_by_value, reason = "a test makes one, whose size does not matter")]
 fn growth_rate_per_s(law: Law, speed_m_s: f64, coefficient: f64, w: f64) -> f64 {
     let model = oscillator(STIFFNESS_N_M, w / OMEGA);
     let drive = on_belt(law, speed_m_s);

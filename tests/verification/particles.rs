@@ -99,6 +99,7 @@ impl Particles {
 }
 
 /// Does one step and balances its energies.
+#[expect(clippy::large_types_passed_by_value, reason = "a test makes one, whose size does not matter")]
 pub fn audited_step(model: &Model, drive: Drive, state: &mut State<1>, ledger: &mut EnergyLedger<1>) {
     ledger.before_step(model, state);
     step(model, &[drive], state);

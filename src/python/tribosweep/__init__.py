@@ -84,7 +84,7 @@ def run(
     """
     _pandas()  # Without it nothing is begun.
     with _file_of(study) as path:
-        changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
+        changes = _changes(preset, settings)
         plan, _ = call(["validate", path, *changes, "--json", "--replace", *_database(db)])
         options = _options(db, out, threads, replace)
         _, doubts = call(["run", path, *changes, *options], codes=WITH_RESULTS, progress_of=_path_of(db))
@@ -117,7 +117,7 @@ def solve(study: Study, *, db: Database = None, preset: str | None = None, **set
 
     Raises Error if the job is refused or fails.
     """
-    changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
+    changes = _changes(preset, settings)
     with _file_of(study) as path:
         if db is None:
             text, doubts = call(["solve", path, *changes, "--json"])
@@ -175,7 +175,7 @@ def stability(
     frames = _pandas()
     options = _options(db, out, threads, replace) + [f"--modes={modes}", "--json"]
     with _file_of(study) as path:
-        changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
+        changes = _changes(preset, settings)
         text, doubts = call(["stability", path, *changes, *options], codes=WITH_RESULTS, progress_of=_path_of(db))
     found: pandas.DataFrame = frames.DataFrame([json.loads(line) for line in text.splitlines()])
     found.attrs["warnings"] = doubts
@@ -213,7 +213,7 @@ def calibrate(
     options += [] if most_points is None else [f"--most-points={most_points}"]
     with _file_of(study) as path, _data_file(data) as measured:
         options += [] if measured is None else ["--data", measured]
-        changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
+        changes = _changes(preset, settings)
         text, doubts = call(["calibrate", path, *changes, *options], codes=WITH_RESULTS, progress_of=_path_of(db))
     found = Record(json.loads(text))
     _warn(doubts)
@@ -301,8 +301,8 @@ def inspect(
     options = [part for node in _list(nodes) for part in ("--node", node)]
     options += [] if cycles is None else [f"--cycles={cycles}"]
     options += [] if frames is None else [f"--frames={frames}"]
-    options += [] if preset is None else ["--preset", preset]
-    values = [part for part in _settings(settings) if part != "--set"] + ([] if job is None else [job])
+    options += _changes(preset, None)
+    values = _assignments(settings) + ([] if job is None else [job])
     with _file_of(study) as path, _folder(out) as folder:
         _, messages = output_of(["inspect", *options, *_database(db), "--out", folder, "--", path, *values])
         found = _inspection.read(Path(folder), with_fields=fields)
@@ -366,7 +366,7 @@ def validate(
     What the program warns of is an InputWarning. Raises Error with all mistakes if the study is refused.
     """
     with _file_of(study) as path:
-        changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
+        changes = _changes(preset, settings)
         text, doubts = call(["validate", path, *changes, "--json", "--replace", *_database(db)])
     found = Record(json.loads(text))
     _warn(doubts)
@@ -423,11 +423,19 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{value!r} is no number, text, list or dictionary")
 
 
-def _settings(settings: Mapping[str, Any] | None) -> list[str]:
+def _assignments(settings: Mapping[str, Any] | None) -> list[str]:
+    """Writes each setting as NAME=VALUE."""
+
     def text(value: Any) -> str:
         return value if isinstance(value, str) else json.dumps(value, default=_plain)
 
-    return [part for name, value in (settings or {}).items() for part in ("--set", f"{name}={text(value)}")]
+    return [f"{name}={text(value)}" for name, value in (settings or {}).items()]
+
+
+def _changes(preset: str | None, settings: Mapping[str, Any] | None) -> list[str]:
+    """The options that change a study."""
+    options = [part for assignment in _assignments(settings) for part in ("--set", assignment)]
+    return options + ([] if preset is None else ["--preset", preset])
 
 
 # Where a study may name a file.

@@ -36,7 +36,7 @@ use crate::spec::{Contact, FrictionLaw as Name, Memory};
 
 /// A friction law with the coefficients of one lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "a lane has one law, which is copied where a job begins")]
+#[expect(clippy::large_enum_variant, reason = "a lane has one law, which is copied at most once in a step")]
 pub enum Law {
     /// Coulomb's law with a constant coefficient.
     Coulomb(Coulomb),
