@@ -380,7 +380,7 @@ def deflection(clamp_m, nu):
 def deflections():
     """The static deflections of the pin by Poisson's ratio, from tests/verification/locking.rs."""
     printed = subprocess.run(
-        ["cargo", "test", "--release", "--test", "verification", "--", "--ignored", "--nocapture", "deflections_for_the_page"],
+        ["cargo", "test", "--release", "--test", "mechanics", "--", "--ignored", "--nocapture", "deflections_for_the_page"],
         cwd=runs.ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
     lines = [line.split("deflections ")[1].split() for line in printed.splitlines() if "deflections 0" in line]
     return {float(nu): [float(x) for x in found] for nu, *found in lines}

@@ -52,9 +52,9 @@ def has_test(mutant):
     if function == "in_a_file":
         # A test that runs on both databases is a module, in which each database has a function.
         function = modules.pop()
-    crate = ROOT / ("src/lib.rs" if mutant.target == "--lib" else f"tests/{mutant.target[7:]}/main.rs")
+    crate = ROOT / ("src/lib.rs" if mutant.target == "--lib" else f"tests/{mutant.target[7:]}.rs")
     if not crate.is_file():
-        crate = ROOT / f"tests/{mutant.target[7:]}.rs"
+        crate = crate.with_suffix("") / "main.rs"
     # The first modules are files, and the others are inside the last of these files.
     for depth in range(len(modules), -1, -1):
         path = crate.parent.joinpath(*modules[:depth])

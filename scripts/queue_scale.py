@@ -3,7 +3,7 @@
 
     cargo build --release
     python3 scripts/queue_scale.py [--jobs 100000]
-    cargo test --release --test orchestration -- --ignored --nocapture throughput
+    cargo test --release --test sweeps -- --ignored --nocapture throughput
 
 Submits a grid of small jobs and gives every job one of two solved records, and then measures the commands that read them.
 The records are written directly to the database, so that no simulation is needed; the jobs in one corner of the grid are not

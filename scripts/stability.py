@@ -3,7 +3,7 @@
 
     scripts/stability.py [--cases N] [--seed S]
 
-The scenes and the runs are those of the test `stress`; the fuzzing is quoted from tests/fuzz/record.json, which
+The scenes and the runs are those of `tests/stress`; the fuzzing is quoted from tests/fuzz/record.json, which
 scripts/fuzz.sh writes.
 """
 
@@ -22,10 +22,10 @@ FUZZ = runs.ROOT / "tests" / "fuzz"
 
 
 def stress(*arguments, **settings):
-    """Runs tests of the target `stress`, which append their lines to the summary's folder."""
+    """Runs tests of `tests/stress`, which append their lines to the summary's folder."""
     environment = dict(os.environ, TRIBOSWEEP_STRESS_SUMMARY=str(SUMMARY))
     environment.update({f"TRIBOSWEEP_STRESS_{name.upper()}": str(value) for name, value in settings.items()})
-    command = ["cargo", "test", "--release", "--quiet", "--test", "stress", "--", *arguments]
+    command = ["cargo", "test", "--release", "--quiet", "--test", "mechanics", "--", *arguments]
     # A case that ends in a wrong way makes the test fail and still writes its line, so that the page can say so.
     done = subprocess.run(command, cwd=runs.ROOT, env=environment, stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
@@ -149,14 +149,14 @@ def main():
     if SUMMARY.exists():
         shutil.rmtree(SUMMARY)
     SUMMARY.mkdir(parents=True)
-    good = stress("every_case", seed=arguments.seed, cases=arguments.cases)
-    good &= stress("beyond")
-    good &= stress("--ignored", "long")
+    good = stress("stress::cases::every_case", seed=arguments.seed, cases=arguments.cases)
+    good &= stress("stress::beyond")
+    good &= stress("--ignored", "stress::long")
     ends = [line["ended"] for line in lines("cases")]
     total, cases = cases_section(ends)
     repeat = (
         f"TRIBOSWEEP_STRESS_SEED={arguments.seed} TRIBOSWEEP_STRESS_ONLY=4711 \\\n"
-        "    cargo test --release --test stress every_case -- --nocapture"
+        "    cargo test --release --test mechanics every_case -- --nocapture"
     )
     runs.write("stability.md", PAGE.format(
         total=total, seed=arguments.seed, cases=cases, beyond=beyond_section(), long=long_section(), fuzz=fuzz_section(),

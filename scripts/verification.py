@@ -134,7 +134,7 @@ def run_suite():
     shutil.rmtree(EVIDENCE, ignore_errors=True)
     EVIDENCE.mkdir(parents=True)
     done = subprocess.run(
-        ["cargo", "test", "--release", "--test", "verification", "--", "--include-ignored"],
+        ["cargo", "test", "--release", "--test", "mechanics", "--", "--include-ignored", "verification::"],
         cwd=runs.ROOT, env=dict(os.environ, TRIBOSWEEP_VERIFICATION=str(EVIDENCE)), stdout=subprocess.PIPE, text=True,
     )
     results = re.search(r"(\d+) passed; (\d+) failed", done.stdout)
@@ -163,8 +163,8 @@ def main():
     runs.write(
         "verification.md",
         "# Verification against exact answers\n\n"
-        "Written by `scripts/verification.py`; do not edit. It runs `cargo test --release --test verification --\n"
-        "--include-ignored`; every case below is asserted there, under one of the criteria that\n"
+        "Written by `scripts/verification.py`; do not edit. It runs `cargo test --release --test mechanics --\n"
+        "--include-ignored verification::`; every case below is asserted there, under one of the criteria that\n"
         "`tests/verification/evidence.rs` defines: *exact* (only rounding, with a count of operations), *order* (the\n"
         "observed order within 0.25 of that of the analysis, and the extrapolated limit as close to the exact answer as\n"
         "two extrapolations are to each other), *order overall* (slope from the coarsest to the finest), *bounded* (a\n"

@@ -1,6 +1,6 @@
 //! Jobs that are advanced together.
 
-use crate::signals::coarse;
+use crate::analysis::signals::coarse;
 use std::collections::BTreeMap;
 use strum::VariantArray;
 use tribosweep_mechanics::analysis::batch::{Batch, Begun};
@@ -10,6 +10,9 @@ use tribosweep_mechanics::spec::{
     Accuracy, ClampSide, Continuation, DiskKind, FrictionLaw, JobSpec, MuOfSpeed, Precision, Region, Shape,
     StabilityMethod, Start, Table,
 };
+
+/// Turns between two interruptions of a job.
+const PAUSES: [usize; 3] = [1, 5, 13];
 
 /// Jobs of one model. They differ in everything that may differ: friction, speed, load, ramp, length, and
 /// early stop.
@@ -120,7 +123,7 @@ fn companions_and_interruptions_change_nothing_with_other_laws() {
                 job.run.limit_s = job.run.limit_s.min(0.002);
             }
             companions_change_nothing_in(&jobs);
-            resumed_jobs_have_the_same_bits(&jobs, &[2]);
+            resumed_jobs_have_the_same_bits(&jobs, &[2], &[5]);
         }
     }
 }
@@ -151,7 +154,7 @@ fn companions_and_interruptions_change_nothing_on_general_meshes() {
             job.run.limit_s = job.run.limit_s.min(0.003);
         }
         companions_change_nothing_in(&jobs);
-        resumed_jobs_have_the_same_bits(&jobs, &[2]);
+        resumed_jobs_have_the_same_bits(&jobs, &[2], &PAUSES);
     }
 }
 
@@ -183,7 +186,7 @@ fn companions_and_interruptions_change_nothing_with_programs() {
     for precision in [Precision::Double, Precision::Single] {
         let jobs = programmed(precision);
         companions_change_nothing_in(&jobs);
-        resumed_jobs_have_the_same_bits(&jobs, &[0, 2, 3]);
+        resumed_jobs_have_the_same_bits(&jobs, &[0, 2, 3], &PAUSES);
         let windows = |job: &JobSpec| solve(job, &mut Unobserved).unwrap().windows.len();
         assert_eq!((windows(&jobs[0]), windows(&jobs[1]), windows(&jobs[3])), (5, 0, 8));
     }
@@ -250,7 +253,7 @@ fn nothing_changes_where_an_accuracy_is_asked(precision: Precision) {
         assert!(records.iter().any(|record| is_such(&record)), "{elements:?}, reached: {reached}");
     }
     companions_change_nothing_in(&jobs);
-    resumed_jobs_have_the_same_bits(&jobs, &[0, 3]);
+    resumed_jobs_have_the_same_bits(&jobs, &[0, 3], &PAUSES);
 }
 
 /// Protects: the same with both, a coarser mesh and single precision.
@@ -296,21 +299,21 @@ fn companions_change_nothing_in(jobs: &[JobSpec]) {
 #[test]
 fn a_resumed_job_has_the_same_bits() {
     let jobs = observed(DiskKind::Rigid, Precision::Double);
-    resumed_jobs_have_the_same_bits(&jobs, &[0, 2, 3, 7]);
+    resumed_jobs_have_the_same_bits(&jobs, &[0, 2, 3, 7], &PAUSES);
     assert!(alone(&jobs[3]).contains("decayed"), "the watch for a decay was among it");
 }
 
 /// Protects: the same in single precision. Checkpoints hold f64, in which every f32 is exact.
 #[test]
 fn a_resumed_job_in_single_precision_has_the_same_bits() {
-    resumed_jobs_have_the_same_bits(&observed(DiskKind::Rigid, Precision::Single), &[0, 2, 3, 7]);
+    resumed_jobs_have_the_same_bits(&observed(DiskKind::Rigid, Precision::Single), &[0, 2, 3, 7], &PAUSES);
 }
 
 /// Protects: the same on an elastic disk, whose state is part of the checkpoint.
 #[test]
 fn a_resumed_job_on_an_elastic_disk_has_the_same_bits() {
     let jobs = observed(DiskKind::Elastic, Precision::Double);
-    resumed_jobs_have_the_same_bits(&jobs, &[0, 2, 3, 7]);
+    resumed_jobs_have_the_same_bits(&jobs, &[0, 2, 3, 7], &PAUSES);
     assert!(alone(&jobs[3]).contains("decayed"), "the watch for a decay was among it");
 }
 
@@ -319,12 +322,12 @@ fn a_resumed_job_on_an_elastic_disk_has_the_same_bits() {
 #[test]
 fn a_resumed_job_after_coarser_meshes_has_the_same_bits() {
     let mut jobs = nested_jobs(Precision::Double);
-    resumed_jobs_have_the_same_bits(&jobs, &[0, 3]);
+    resumed_jobs_have_the_same_bits(&jobs, &[0, 3], &PAUSES);
     for job in &mut jobs {
         job.scene.pin.elements = [21, 21, 21];
         job.numerics.beta2 = 0.5;
     }
-    resumed_jobs_have_the_same_bits(&jobs, &[2]);
+    resumed_jobs_have_the_same_bits(&jobs, &[2], &PAUSES);
 }
 
 /// Jobs of which one is found stable after an observation that is interrupted.
@@ -336,10 +339,11 @@ fn observed(disk: DiskKind, precision: Precision) -> Vec<JobSpec> {
     jobs
 }
 
-fn resumed_jobs_have_the_same_bits(jobs: &[JobSpec], resumed: &[usize]) {
+/// Interrupts the jobs `resumed` after each of `pauses` turns.
+fn resumed_jobs_have_the_same_bits(jobs: &[JobSpec], resumed: &[usize], pauses: &[usize]) {
     for &job in resumed {
         let mut records = Vec::new();
-        for pause in [1, 5, 13] {
+        for &pause in pauses {
             let mut batch = Batch::new(&jobs[job]).unwrap();
             batch.begin(1, jobs[job].clone()).unwrap();
             let (mut resumed, mut turns) = (0, 0);

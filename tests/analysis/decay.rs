@@ -1,7 +1,7 @@
 //! When sliding counts as decaying.
 
+use crate::analysis::signals::{STEP_S, sample, sine};
 use crate::random::Random;
-use crate::signals::{STEP_S, sample, sine};
 use tribosweep_mechanics::analysis::decay::DecayMonitor;
 use tribosweep_mechanics::analysis::lines::ROUNDING;
 use tribosweep_mechanics::analysis::sample::Sample;

@@ -1,6 +1,6 @@
 //! Short runs and extreme but legal inputs. They give a record without NaN, or a clear error.
 
-use crate::signals::coarse;
+use crate::analysis::signals::coarse;
 use tribosweep_mechanics::analysis::{JobError, JobRecord, Outcome, Regime, Unobserved, solve};
 use tribosweep_mechanics::solver::SolverError;
 use tribosweep_mechanics::spec::{ClampSide, JobSpec, TopFace};

@@ -1,7 +1,7 @@
 //! Sums, means and weights of windows.
 
+use crate::analysis::signals::{LOAD_N, SQUEAL_HZ, STEP_S, cut, sample, sine};
 use crate::random::Random;
-use crate::signals::{LOAD_N, SQUEAL_HZ, STEP_S, cut, sample, sine};
 use tribosweep_mechanics::analysis::figures::Figures;
 use tribosweep_mechanics::analysis::sample::Sample;
 

@@ -1,7 +1,7 @@
 //! The fundamental frequency of N from its section crossings.
 
+use crate::analysis::signals::{SQUEAL_HZ, STEP_S, cut, sample, sine};
 use crate::random::Random;
-use crate::signals::{SQUEAL_HZ, STEP_S, cut, sample, sine};
 use tribosweep_mechanics::analysis::cycles::Cycle;
 use tribosweep_mechanics::analysis::steady;
 use tribosweep_mechanics::spec::Detection;

@@ -1,6 +1,6 @@
 //! The identities and the early stop in real, but coarse runs.
 
-use crate::signals::coarse;
+use crate::analysis::signals::coarse;
 use tribosweep_mechanics::analysis::{JobRecord, Outcome, Unobserved, solve};
 use tribosweep_mechanics::spec::JobSpec;
 

@@ -1,6 +1,6 @@
 //! An observer interrupts a job.
 
-use crate::signals::coarse;
+use crate::analysis::signals::coarse;
 use std::ops::ControlFlow;
 use tribosweep_mechanics::analysis::{JobError, JobObserver, Moment, solve};
 

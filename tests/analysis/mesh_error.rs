@@ -1,6 +1,6 @@
 //! The error of the mesh: its bound, what the bound covers, and where it is unknown.
 
-use crate::signals::coarse;
+use crate::analysis::signals::coarse;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use tribosweep_mechanics::analysis::{

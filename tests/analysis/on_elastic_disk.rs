@@ -1,6 +1,6 @@
 //! The analysis of jobs on an elastic disk.
 
-use crate::signals::coarse;
+use crate::analysis::signals::coarse;
 use tribosweep_mechanics::analysis::{JobRecord, Outcome, Regime, Unobserved, solve};
 use tribosweep_mechanics::spec::{DiskKind, JobSpec};
 

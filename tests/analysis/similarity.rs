@@ -1,6 +1,6 @@
 //! The similarity that `study::Study::warnings` uses: on a rigid disk jobs with the same ω E/F and ρ/E have the same result.
 
-use crate::signals::coarse;
+use crate::analysis::signals::coarse;
 use tribosweep_mechanics::analysis::{JobRecord, Unobserved, solve};
 use tribosweep_mechanics::spec::JobSpec;
 

@@ -4,7 +4,7 @@
 //! they change is the step at which a node changes its state. Such a change by one step shifts the share of a state by
 //! 1/(slave nodes × steps of the window).
 
-use crate::signals::coarse;
+use crate::analysis::signals::coarse;
 use tribosweep_mechanics::analysis::{JobRecord, Outcome, Unobserved, solve};
 use tribosweep_mechanics::spec::{JobSpec, Precision};
 

@@ -1,6 +1,6 @@
 //! When a sequence of cycles counts as periodic.
 
-use crate::signals::{LOAD_N, SQUEAL_HZ, STEP_S, cut, sample, sine};
+use crate::analysis::signals::{LOAD_N, SQUEAL_HZ, STEP_S, cut, sample, sine};
 use tribosweep_mechanics::analysis::cycles::{Cycle, CycleCutter};
 use tribosweep_mechanics::analysis::steady::{self, Obstacle, SteadyState};
 use tribosweep_mechanics::solver::energy::Energies;

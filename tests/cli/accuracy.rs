@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, rows, small, stderr, stdout, without_wall_times};
+use crate::cli::support::{Folder, rows, small, stderr, stdout, without_wall_times};
 
 /// Protects: `pareto` prints a table and writes files into the report's folder, for a study by name or by file and for
 /// several studies at once.

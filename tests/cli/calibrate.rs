@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::growing::{assert_same, storm, timed, undisturbed};
-use crate::support::{Folder, rows, small, stderr};
+use crate::cli::growing::{assert_same, storm, timed, undisturbed};
+use crate::cli::support::{Folder, rows, small, stderr};
 
 const TRUTH: [f64; 2] = [0.45, 2.5e9];
 

@@ -10,8 +10,8 @@ use tribosweep::cli::Cli;
 use tribosweep::solver;
 use tribosweep::study::{Study, schema};
 
+use crate::cli::support::{Folder, HEADER, long, rows, small, stderr, stdout};
 use crate::report_files::{LIST, REPORT};
-use crate::support::{Folder, HEADER, long, rows, small, stderr, stdout};
 
 /// Protects: the progress of one and of all studies, as text and as JSON, before and after the work.
 #[test]

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use crate::support::{Folder, rows, small, stderr};
+use crate::cli::support::{Folder, rows, small, stderr};
 
 /// Protects: two studies and measured points are in one report, with the differences, in a folder of their names; inputs that
 /// differ are said. The report of one study with its own axes stays as it is.

@@ -1,6 +1,6 @@
 //! The whole path: a study file, the queue, the database, the export.
 
-use crate::support::Folder;
+use crate::cli::support::Folder;
 use serde_json::{Value, json};
 
 /// A study with corners along every axis. All combinations are jobs.

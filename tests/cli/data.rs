@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, SqliteConnection};
 
-use crate::support::{ExportRow, Folder, HEADER, rows, small, stderr, stdout};
+use crate::cli::support::{ExportRow, Folder, HEADER, rows, small, stderr, stdout};
 
 fn parsed(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))

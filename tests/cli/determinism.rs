@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, rows, small, without_wall_times};
+use crate::cli::support::{Folder, rows, small, without_wall_times};
 
 /// Protects: except for wall times the export on several threads is the same as on one, byte for byte.
 #[test]

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use tribosweep::queue::{Clock, NewJob, NewStudy, Queue};
 
-use crate::support::{Folder, diverging, rows, small, stderr, stdout};
+use crate::cli::support::{Folder, diverging, rows, small, stderr, stdout};
 
 /// Asserts that the command ends with code 2, prints no result, and that its message contains each of `expected`.
 fn refuses(folder: &Folder, arguments: &str, expected: &[&str]) {

@@ -5,8 +5,8 @@ use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
 
-use crate::several::read;
-use crate::support::{Folder, TRIBOSWEEP, rows, small, stderr, stdout};
+use crate::cli::several::read;
+use crate::cli::support::{Folder, TRIBOSWEEP, rows, small, stderr, stdout};
 use crate::tools::missing;
 
 fn parsed(text: &str) -> Value {

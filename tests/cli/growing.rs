@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
+use crate::cli::support::{Folder, rows, small, stderr, without_wall_times};
 use crate::random::Random;
-use crate::server_database::ServerDatabase;
-use crate::support::{Folder, rows, small, stderr, without_wall_times};
+use crate::server::ServerDatabase;
 
 /// Curves with their minima, and boundaries of stability, on a small mesh. Waves are small, so that there are many.
 fn refining() -> Value {

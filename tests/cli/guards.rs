@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, rows, small, stderr};
+use crate::cli::support::{Folder, rows, small, stderr};
 
 /// A study of the name `mine` with this load.
 fn mine(load_n: f64, grid: &Value) -> Value {

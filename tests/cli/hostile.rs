@@ -9,8 +9,8 @@ use serde_json::json;
 use sqlx::ConnectOptions;
 use sqlx::sqlite::SqliteConnectOptions;
 
+use crate::cli::support::{Folder, LONG_JOBS, long, rows, small, stderr, stdout, without_wall_times};
 use crate::mount::Mount;
-use crate::support::{Folder, LONG_JOBS, long, rows, small, stderr, stdout, without_wall_times};
 
 async fn change(folder: &Folder, statement: &'static str) {
     let options = SqliteConnectOptions::new().filename(folder.path("tribosweep.db"));
@@ -77,7 +77,7 @@ fn a_folder_that_becomes_read_only() {
     folder.ok("submit study.json");
     let path = folder.path("");
     // The other user may have no access to the folder of the program.
-    fs::copy(crate::support::TRIBOSWEEP, path.join("program")).unwrap();
+    fs::copy(crate::cli::support::TRIBOSWEEP, path.join("program")).unwrap();
     fs::set_permissions(&path, fs::Permissions::from_mode(0o555)).unwrap();
     fs::set_permissions(folder.path("tribosweep.db"), fs::Permissions::from_mode(0o444)).unwrap();
     fs::set_permissions(folder.path("tribosweep.db.lock"), fs::Permissions::from_mode(0o444)).unwrap();

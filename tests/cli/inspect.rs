@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{ExportRow, Folder, handles_interrupts, long, rows, small, stderr, wait};
+use crate::cli::support::{ExportRow, Folder, handles_interrupts, long, rows, small, stderr, wait};
 
 fn folder() -> Folder {
     Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4], "omega_rpm": [2, 7] })))

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use crate::support::{Folder, LONG_JOBS, Running, long, rows, wall_times, without_wall_times};
+use crate::cli::support::{Folder, LONG_JOBS, Running, long, rows, wall_times, without_wall_times};
 
 /// The export of the study without an interruption, without wall times.
 fn undisturbed() -> &'static str {

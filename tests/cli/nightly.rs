@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::support::Folder;
+use crate::cli::support::Folder;
 use crate::tools;
 
 /// What makes another export of one.

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, handles_interrupts, rows, small, stderr, wait};
+use crate::cli::support::{Folder, handles_interrupts, rows, small, stderr, wait};
 
 const HISTORY: &str = "time_s,load_n,normal_n,smooth_normal_n,clamp_tangential_n,contact_tangential_n,contact_sideways_n,mu_eq,\
 stick_nodes,slip_nodes,separated_nodes,\
@@ -18,7 +18,7 @@ fn folder() -> Folder {
 }
 
 /// The rows of a history.
-struct History(Vec<crate::support::ExportRow>);
+struct History(Vec<crate::cli::support::ExportRow>);
 
 impl History {
     fn read(folder: &Folder, file: &str) -> Self {

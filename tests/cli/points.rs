@@ -1,6 +1,6 @@
 //! Studies whose points are no grid, from the command line.
 
-use crate::support::{Folder, rows, small, stderr, stdout};
+use crate::cli::support::{Folder, rows, small, stderr, stdout};
 use serde_json::json;
 
 /// A small scene at ten points of three parameters, and one that fails.
@@ -82,7 +82,7 @@ fn a_grid_has_exact_indices() {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let variance =
         |values: &[f64]| mean(&values.iter().map(|v| (v - mean(values)).powi(2)).collect::<Vec<_>>());
-    let of = |row: &crate::support::ExportRow, name: &str| row[name].parse::<f64>().unwrap();
+    let of = |row: &crate::cli::support::ExportRow, name: &str| row[name].parse::<f64>().unwrap();
     let all: Vec<f64> = export.iter().map(|row| of(row, "mu_star")).collect();
     let lines = rows(&folder.read("reports/mine/sensitivity.csv"));
     for (own, other) in [("mu", "omega_rpm"), ("omega_rpm", "mu")] {
@@ -101,7 +101,7 @@ fn a_grid_has_exact_indices() {
         ];
         for (index, expected) in expected {
             let is_wanted =
-                |line: &&crate::support::ExportRow| line["parameter"] == own && line["index"] == index;
+                |line: &&crate::cli::support::ExportRow| line["parameter"] == own && line["index"] == index;
             let line = lines.iter().find(is_wanted).unwrap();
             assert!((of(line, "value") - expected).abs() < 1e-9, "{own} {index}: {expected} {line:?}");
             assert_eq!((&*line["low"], &*line["by_chance"]), ("", ""));

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::support::Folder;
+use crate::cli::support::Folder;
 use crate::tools;
 
 /// What the module promises, as Python's own assertions.

@@ -7,8 +7,8 @@ use std::sync::{Arc, OnceLock};
 
 use serde_json::{Value, json};
 
-use crate::server_database::{ServerDatabase, block_on};
-use crate::support::{Folder, LONG_JOBS, long, rows, small, stderr, stdout, wait, without_wall_times};
+use crate::cli::support::{Folder, LONG_JOBS, long, rows, small, stderr, stdout, wait, without_wall_times};
+use crate::server::{ServerDatabase, block_on};
 use crate::tools;
 
 /// A folder with a study, and the export of its run in a file.

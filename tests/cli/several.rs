@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, SqliteConnection};
 
-use crate::support::{
+use crate::cli::support::{
     Folder, Running, long, rows, small, stderr, stdout, wait, wall_times, without_wall_times,
 };
 

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use crate::support::{Folder, rows, small, stderr, without_wall_times};
+use crate::cli::support::{Folder, rows, small, stderr, without_wall_times};
 
 /// Protects: a study that is submitted, run and merged in shards has the results of the whole study, byte for byte except
 /// for run times. Merging again changes nothing, and jobs that no shard has run are still pending. A shard has a report of

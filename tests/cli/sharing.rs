@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use crate::support::{Folder, rows, small, stderr, wall_times};
+use crate::cli::support::{Folder, rows, small, stderr, wall_times};
 
 /// Protects: a repeated submission adds no jobs, and a repeated run simulates nothing: the wall times are those of the first
 /// run.

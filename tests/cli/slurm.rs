@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, TRIBOSWEEP, small, stderr, stdout, wait};
+use crate::cli::support::{Folder, TRIBOSWEEP, small, stderr, stdout, wait};
 
 const SCRIPTS: [&str; 3] = ["workers.sbatch", "report.sbatch", "submit.sh"];
 const URL: &str = "postgres://me@host:5432/sweeps";

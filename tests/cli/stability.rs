@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{ExportRow, Folder, rows, small, stderr, stdout, wall_times};
+use crate::cli::support::{ExportRow, Folder, rows, small, stderr, stdout, wall_times};
 
 const COLUMNS: &str = "omega_rpm,mu,mode,frequency_hz,frequency_mesh_error_hz,growth_rate_1_s,\
 growth_rate_mesh_error_1_s,damping_ratio,residual,converged,contact_nodes,lifted_nodes,band_hz,above_band";

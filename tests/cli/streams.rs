@@ -4,7 +4,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::json;
 
-use crate::support::{Folder, TRIBOSWEEP, diverging, small, stderr, stdout};
+use crate::cli::support::{Folder, TRIBOSWEEP, diverging, small, stderr, stdout};
 
 fn folder() -> Folder {
     Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })))

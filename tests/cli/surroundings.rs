@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, SqliteConnection};
 
+use crate::cli::support::{Folder, long, small, stderr, stdout, wait, without_wall_times};
 use crate::mount::Mount;
-use crate::support::{Folder, long, small, stderr, stdout, wait, without_wall_times};
 
 fn undisturbed(study: &Value) -> String {
     let folder = Folder::with("study", study);
@@ -31,7 +31,7 @@ fn a_disk_that_fills_up() {
     let folder = Folder::new();
     let Some(_mount) = Mount::new(&folder.path(""), "size=4M") else { return };
     let mut study = long();
-    study["run"]["limit_s"] = json!(0.6);
+    study["run"]["limit_s"] = json!(0.25);
     folder.add("study", &study);
     folder.ok("submit study.json");
     let work = folder.start("work --threads 1");
@@ -123,7 +123,7 @@ async fn a_lock_is_waited_for() {
 async fn results_wait_for_a_lock() {
     let mut study = long();
     // Jobs still run when the lock comes, on a fast machine too.
-    study["run"]["limit_s"] = json!(0.6);
+    study["run"]["limit_s"] = json!(0.25);
     let folder = Folder::with("study", &study);
     folder.ok("submit study.json");
     let work = folder.start_with_messages_in("messages", "work --threads 1 --lease 5s");

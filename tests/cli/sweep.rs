@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
+use crate::cli::support::{Folder, HEADER, rows, stderr, stdout};
 use crate::report_files::REPORT;
-use crate::support::{Folder, HEADER, rows, stderr, stdout};
 
 /// Protects: one command runs the shipped quick study and prints the table of μ*, writes all files of the report and no
 /// others, and the export has all four contact regimes.

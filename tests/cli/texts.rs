@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, rows, small, stderr, stdout};
+use crate::cli::support::{Folder, rows, small, stderr, stdout};
 
 const COMMENTED: &str = r#"// A coarse pin.
 {

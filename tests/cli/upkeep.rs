@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, diverging, rows, small, stderr, stdout};
+use crate::cli::support::{Folder, diverging, rows, small, stderr, stdout};
 
 /// Protects: cancelled jobs are not run and are counted as cancelled. `retry` or another submission makes them pending.
 #[test]

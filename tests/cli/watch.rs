@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use crate::support::{Folder, LONG_JOBS, long, small, stderr, stdout, wait};
+use crate::cli::support::{Folder, LONG_JOBS, long, small, stderr, stdout, wait};
 
 const REFRESH: &str = "http-equiv=\"refresh\"";
 

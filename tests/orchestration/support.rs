@@ -47,13 +47,13 @@ macro_rules! on_both_databases {
             $(#[$attribute])*
             #[test]
             fn in_a_file() {
-                crate::support::run_in(crate::support::Engine::Sqlite, |sandbox| Box::pin(super::$name(sandbox)));
+                crate::orchestration::support::run_in(crate::orchestration::support::Engine::Sqlite, |sandbox| Box::pin(super::$name(sandbox)));
             }
 
             $(#[$attribute])*
             #[test]
             fn on_a_server() {
-                crate::support::run_in(crate::support::Engine::Postgres, |sandbox| Box::pin(super::$name(sandbox)));
+                crate::orchestration::support::run_in(crate::orchestration::support::Engine::Postgres, |sandbox| Box::pin(super::$name(sandbox)));
             }
         })*
     };

@@ -1,8 +1,8 @@
 //! Runs above the true stability limit. The guard must detect their divergence in time.
 
-use crate::modes::{self, Mode};
-use crate::scenes::{IDLE, in_the_air, lifted, pin};
-use crate::summary;
+use crate::stress::modes::{self, Mode};
+use crate::stress::scenes::{IDLE, in_the_air, lifted, pin};
+use crate::stress::summary;
 use serde_json::{Value, json};
 use tribosweep_mechanics::analysis;
 use tribosweep_mechanics::solver::energy::{Energies, EnergyLedger};

@@ -1,6 +1,6 @@
 //! How a case ends, and whether this ending is allowed.
 
-use crate::audited::{Audited, Rounded};
+use crate::stress::audited::{Audited, Rounded};
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -29,7 +29,7 @@ pub enum Ending {
     },
 }
 
-/// How well the energies of a result close; see [`crate::audited`].
+/// How well the energies of a result close; see [`crate::stress::audited`].
 #[derive(Debug, Clone)]
 pub struct Closure {
     /// The record's outcome.

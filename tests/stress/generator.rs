@@ -90,7 +90,7 @@ fn contact(random: &mut Random, spec: &mut JobSpec) {
 
 /// Another friction law, with scales far below and far above what the run reaches.
 fn law(random: &mut Random, spec: &mut JobSpec) {
-    let speed_m_s = crate::corners::speed_m_s(spec);
+    let speed_m_s = crate::stress::corners::speed_m_s(spec);
     let contact = &mut spec.scene.contact;
     if random.chance(0.5) {
         contact.law = random.pick(FrictionLaw::VARIANTS);

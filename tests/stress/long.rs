@@ -2,11 +2,11 @@
 //!
 //! A run in the ordinary suite has 20 000 steps, a run in `scripts/stability.py` a million.
 
-use crate::audited::Audited;
-use crate::modes;
 use crate::random::Random;
-use crate::scenes::{IDLE, in_the_air, pin};
-use crate::summary;
+use crate::stress::audited::Audited;
+use crate::stress::modes;
+use crate::stress::scenes::{IDLE, in_the_air, pin};
+use crate::stress::summary;
 use serde_json::json;
 use tribosweep_mechanics::solver::interface::law::Law;
 use tribosweep_mechanics::solver::support::Support;

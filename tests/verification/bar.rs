@@ -30,11 +30,11 @@
 //!
 //! Impact of two deformable bars is in `two_bodies`.
 
-use crate::common::{
+use crate::verification::common::{
     COLUMN_HEIGHT_M, FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, normal_force_n,
     pin_material, step_at_cfl,
 };
-use crate::evidence::Evidence;
+use crate::verification::evidence::Evidence;
 use std::f64::consts::PI;
 use tribosweep_mechanics::solver::energy::EnergyLedger;
 use tribosweep_mechanics::solver::{Model, ModelDefinition, State};

@@ -11,10 +11,10 @@
 //!
 //! Expanding the sine gives the error −(nπ/2N)²/6 against the continuous frequency: order 2.
 
-use crate::common::{
+use crate::verification::common::{
     COLUMN_HEIGHT_M, IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, level, pin_material, step_at_cfl,
 };
-use crate::evidence::Evidence;
+use crate::verification::evidence::Evidence;
 use nalgebra::DMatrix;
 use std::f64::consts::{PI, TAU};
 use tribosweep_mechanics::solver::material::Material;

@@ -28,9 +28,9 @@
 //! it. That step ends at y ≥ 0 (it began at y ≥ −A sin θ ≥ −VΔt), so the next slip phase begins as described.
 //! Therefore the bounds of the amplitude hold for ever, and the share of stick is at most θ/(2π).
 
-use crate::common::advance;
-use crate::evidence::Evidence;
-use crate::particles::{Particles, Y, Z, audited_step};
+use crate::verification::common::advance;
+use crate::verification::evidence::Evidence;
+use crate::verification::particles::{Particles, Y, Z, audited_step};
 use std::f64::consts::PI;
 use tribosweep_mechanics::solver::energy::EnergyLedger;
 use tribosweep_mechanics::solver::interface::ContactState;

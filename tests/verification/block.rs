@@ -19,9 +19,11 @@
 //! its m/2 and the spring's μF/2 add up to those of the rigid block. Afterwards at most μF/2 and the rest of
 //! the last step's momentum pull at it, so it keeps the rigid block's position.
 
-use crate::common::{COLUMN_AREA_M2, COLUMN_HEIGHT_M, advance, all_of, column_mesh, definition, level_ties};
-use crate::evidence::Evidence;
-use crate::particles::{Particles, Y, Z};
+use crate::verification::common::{
+    COLUMN_AREA_M2, COLUMN_HEIGHT_M, advance, all_of, column_mesh, definition, level_ties,
+};
+use crate::verification::evidence::Evidence;
+use crate::verification::particles::{Particles, Y, Z};
 use tribosweep_mechanics::solver::interface::ContactState;
 use tribosweep_mechanics::solver::interface::law::Law;
 use tribosweep_mechanics::solver::material::Material;

@@ -26,10 +26,10 @@
 //! is (1 − (gΔt/2vf)²)/2N of all energy, for any step (see `bar`, φ = 0). All other errors have the order of
 //! that loss, 1. Below the limit the returning front is dispersed, which gives order ⅔ (see `bar`).
 
-use crate::common::{
+use crate::verification::common::{
     FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, normal_force_n, step_at_cfl,
 };
-use crate::evidence::Evidence;
+use crate::verification::evidence::Evidence;
 use tribosweep_mechanics::solver::energy::EnergyLedger;
 use tribosweep_mechanics::solver::material::Material;
 use tribosweep_mechanics::solver::support::load::LoadShare;

@@ -17,10 +17,10 @@
 //! when the bar leaves. So errors have order 1 and do not grow. Below the limit fronts disperse, which gives
 //! order ⅔ (see `bar`).
 
-use crate::common::{
+use crate::verification::common::{
     FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, normal_force_n, step_at_cfl,
 };
-use crate::evidence::Evidence;
+use crate::verification::evidence::Evidence;
 use tribosweep_mechanics::solver::energy::EnergyLedger;
 use tribosweep_mechanics::solver::material::Material;
 use tribosweep_mechanics::solver::{Model, ModelDefinition, State};

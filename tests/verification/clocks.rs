@@ -5,9 +5,9 @@
 //! balance exactly. The error of the stages is of second order in the step, while that of the contact is of
 //! first order.
 
-use crate::common::{ROUNDINGS_PER_FORCE, advance};
-use crate::elastic::{coarse_scene, drive};
-use crate::evidence::Evidence;
+use crate::verification::common::{ROUNDINGS_PER_FORCE, advance};
+use crate::verification::elastic::{coarse_scene, drive};
+use crate::verification::evidence::Evidence;
 use tribosweep_mechanics::analysis::{JobError, Unobserved, solve};
 use tribosweep_mechanics::solver::energy::EnergyLedger;
 use tribosweep_mechanics::solver::interface::law::Law;

@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use crate::common::{IDLE, ROUNDINGS_PER_FORCE, advance, bar};
+use crate::verification::common::{IDLE, ROUNDINGS_PER_FORCE, advance, bar};
 use tribosweep_mechanics::analysis::{Outcome, Unobserved, solve};
 use tribosweep_mechanics::solver::{Model, ModelDefinition, State, TimeStep};
 use tribosweep_mechanics::spec::JobSpec;

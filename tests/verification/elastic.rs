@@ -71,7 +71,7 @@ pub fn coarse_scene() -> tribosweep_mechanics::spec::JobSpec {
 
 /// A block without supports. Only the contact acts on it.
 pub fn free_block(size_m: [f64; 3], elements: [usize; 3], material: Material) -> ModelDefinition {
-    crate::common::definition(BlockMesh::new(size_m, elements), material, Vec::new())
+    crate::verification::common::definition(BlockMesh::new(size_m, elements), material, Vec::new())
 }
 
 /// The drive of a job with this μ and this speed of the disk.

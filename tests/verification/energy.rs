@@ -4,8 +4,8 @@
 //! Krenk, *Energy conservation in Newmark based time integration algorithms*, CMAME 195, 2006, with β = 0;
 //! see `solver::energy`).
 
-use crate::common::ROUNDINGS_PER_FORCE;
-use crate::evidence::Evidence;
+use crate::verification::common::ROUNDINGS_PER_FORCE;
+use crate::verification::evidence::Evidence;
 use tribosweep_mechanics::solver::body::pin::Stiffness;
 use tribosweep_mechanics::solver::body::pin::{BlockMesh, PinMesh};
 use tribosweep_mechanics::solver::energy::EnergyLedger;

@@ -25,7 +25,7 @@
 //! at that step. So two questions are tested separately: does the program follow the recursion, and does the
 //! recursion tend to λ?
 
-use crate::evidence::Evidence;
+use crate::verification::evidence::Evidence;
 use nalgebra::{Complex, DMatrix, DVector};
 use tribosweep_mechanics::analysis::{Outcome, Unobserved, drive, solve};
 use tribosweep_mechanics::solver::field::Field;

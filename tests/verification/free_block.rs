@@ -26,10 +26,10 @@
 //! remainder is small and has no single order, so the case there is the overall order from the coarsest mesh
 //! on.
 
-use crate::common::{all_of, definition, pin_material};
-use crate::evidence::Evidence;
-use crate::modes::{CLASSES, MirrorClass, Mode, lowest_modes, stiffness_rows};
-use crate::ritz;
+use crate::verification::common::{all_of, definition, pin_material};
+use crate::verification::evidence::Evidence;
+use crate::verification::modes::{CLASSES, MirrorClass, Mode, lowest_modes, stiffness_rows};
+use crate::verification::ritz;
 use tribosweep_mechanics::solver::Model;
 use tribosweep_mechanics::solver::body::pin::BlockMesh;
 use tribosweep_mechanics::solver::support::Support;

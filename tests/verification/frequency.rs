@@ -17,7 +17,7 @@
 //!   than 10⁻⁷ of it under the Kaiser window with β = 21. A regression over 7 hops t_h turns errors of 10⁻⁷
 //!   into 10⁻⁷·Σ|x|/Σx²/t_h = 10⁻⁷·(12/28)/t_h at most.
 
-use crate::evidence::Evidence;
+use crate::verification::evidence::Evidence;
 use std::f64::consts::{PI, TAU};
 use tribosweep_mechanics::analysis::cycles::{Cycle, CycleCutter};
 use tribosweep_mechanics::analysis::decay::DecayMonitor;

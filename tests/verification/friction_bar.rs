@@ -40,9 +40,9 @@
 //! front's overshoot by a quarter, continues as a pulse. It is weaker on finer meshes, but it ends at about
 //! 1.2 L and 1.3 t* on all of them. So the extent and duration of slip in this sense are not compared.
 
-use crate::evidence::Evidence;
-use crate::friction_chain::{AREA_M2, CAPACITY_N_M, Chain, DENSITY_KG_M3, YOUNG_MODULUS_PA};
-use crate::particles::audited_step;
+use crate::verification::evidence::Evidence;
+use crate::verification::friction_chain::{AREA_M2, CAPACITY_N_M, Chain, DENSITY_KG_M3, YOUNG_MODULUS_PA};
+use crate::verification::particles::audited_step;
 use tribosweep_mechanics::solver::energy::{Energies, EnergyLedger};
 use tribosweep_mechanics::solver::{State, TimeStep};
 

@@ -9,7 +9,7 @@
 //! The pressure comes from springs, so that the drive's force is free to vary in time. A node carries at most
 //! μN = qh. The bar slips over 2F/q under a sudden load and over F/q under a slow one.
 
-use crate::particles::{Particles, Y, Z};
+use crate::verification::particles::{Particles, Y, Z};
 use tribosweep_mechanics::solver::body::pin::BlockMesh;
 use tribosweep_mechanics::solver::interface::law::Law;
 use tribosweep_mechanics::solver::{Drive, Model, State, TimeStep};

@@ -10,8 +10,8 @@
 //!   −N μ′(V)/(2m). For `table` between pairs on a line it is the slope of that. For `exponential` μ′(V) = −(μ_s − μ) e^(−V/v₀)/v₀ + s, for `regularised` μ′(V) = μ v₀/(V + v₀)².
 //! * **Prakash and Clifton's law** under a constant N depends on the slip s alone: limit = μN (1 − e^(−s/L)).
 
-use crate::evidence::Evidence;
-use crate::particles::{Particles, X, Y, Z, audited_step};
+use crate::verification::evidence::Evidence;
+use crate::verification::particles::{Particles, X, Y, Z, audited_step};
 use std::f64::consts::PI;
 use tribosweep_mechanics::solver::energy::EnergyLedger;
 use tribosweep_mechanics::solver::interface::ContactState;

@@ -12,8 +12,8 @@
 //! factor √(1 + γ) in a step. The decay rate is ln(1 + γ)/(2Δt) = (c/2m)(1 − γ/2 + …), of first order. The
 //! phase is of first order, too.
 
-use crate::evidence::Evidence;
-use crate::particles::{Particles, X, Y, Z, audited_step};
+use crate::verification::evidence::Evidence;
+use crate::verification::particles::{Particles, X, Y, Z, audited_step};
 use std::f64::consts::PI;
 use tribosweep_mechanics::solver::energy::EnergyLedger;
 use tribosweep_mechanics::solver::interface::ContactState;

@@ -13,7 +13,7 @@
 //! The pressure of a node is its force over its tributary area. It converges irregularly, because the edge of the contact falls
 //! anywhere in an element.
 
-use crate::evidence::Evidence;
+use crate::verification::evidence::Evidence;
 use std::f64::consts::PI;
 use tribosweep_mechanics::analysis::drive;
 use tribosweep_mechanics::solver::{Model, State, step};

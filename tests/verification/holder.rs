@@ -9,9 +9,9 @@
 //! * **With a large mass** it is an ideal clamp: it moves by at most ∫∫|T|/M, so the difference from the ideal clamp falls like
 //!   1/M.
 
-use crate::common::advance;
-use crate::evidence::Evidence;
-use crate::particles::{Particles, X, Y, Z, audited_step};
+use crate::verification::common::advance;
+use crate::verification::evidence::Evidence;
+use crate::verification::particles::{Particles, X, Y, Z, audited_step};
 use std::f64::consts::TAU;
 use tribosweep_mechanics::analysis::drive;
 use tribosweep_mechanics::solver::body::pin::Stiffness;

@@ -28,9 +28,9 @@
 //! point Ḟ = 0. The errors there, and those of the work between turning points, come from inertia and the
 //! curvature of the lag, ∝ F̈: order 1/T².
 
-use crate::evidence::Evidence;
-use crate::friction_chain::{AREA_M2, CAPACITY_N_M, Chain, DENSITY_KG_M3, YOUNG_MODULUS_PA};
-use crate::particles::audited_step;
+use crate::verification::evidence::Evidence;
+use crate::verification::friction_chain::{AREA_M2, CAPACITY_N_M, Chain, DENSITY_KG_M3, YOUNG_MODULUS_PA};
+use crate::verification::particles::audited_step;
 use std::f64::consts::{FRAC_PI_2, PI};
 use tribosweep_mechanics::solver::TimeStep;
 use tribosweep_mechanics::solver::energy::EnergyLedger;

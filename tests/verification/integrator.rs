@@ -9,8 +9,8 @@
 //! det is found as the ratio of successive Casoratians q_{n+1}q_{n−1} − q_n², which the recursion multiplies
 //! by det at every step (Abel's identity). The trace is found from (q_{n+1} + det q_{n−1})/q_n.
 
-use crate::common::{IDLE, ROUNDINGS_PER_FORCE, advance, bar};
-use crate::evidence::Evidence;
+use crate::verification::common::{IDLE, ROUNDINGS_PER_FORCE, advance, bar};
+use crate::verification::evidence::Evidence;
 use std::f64::consts::PI;
 use tribosweep_mechanics::solver::{Model, ModelDefinition, SolverError, State, TimeStep};
 

@@ -6,8 +6,8 @@
 //! Unstable sliding amplifies this rounding: its fastest mode grows at 5000 to 7000/s in this scene, by e^7
 //! at most in 1 ms. Rigid motions of the elastic operator are in `free_block`.
 
-use crate::common::{IDLE, ROUNDINGS_PER_FORCE, advance, definition, pin_material};
-use crate::evidence::Evidence;
+use crate::verification::common::{IDLE, ROUNDINGS_PER_FORCE, advance, definition, pin_material};
+use crate::verification::evidence::Evidence;
 use tribosweep_mechanics::solver::body::pin::Stiffness;
 use tribosweep_mechanics::solver::body::pin::{BlockMesh, PinMesh};
 use tribosweep_mechanics::solver::energy::EnergyLedger;

@@ -8,9 +8,9 @@
 //!   πωΔt of the energy to first order, which is the contact loss.
 //! * **A stiff layer** is the rigid contact: depths, and so the changes of forces, fall like 1/k.
 
-use crate::common::{ROUNDINGS_PER_FORCE, advance};
-use crate::evidence::Evidence;
-use crate::particles::{Particles, Z, audited_step};
+use crate::verification::common::{ROUNDINGS_PER_FORCE, advance};
+use crate::verification::evidence::Evidence;
+use crate::verification::particles::{Particles, Z, audited_step};
 use tribosweep_mechanics::analysis::drive;
 use tribosweep_mechanics::solver::energy::EnergyLedger;
 use tribosweep_mechanics::solver::interface::Layer;

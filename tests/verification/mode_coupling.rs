@@ -31,8 +31,8 @@
 //! histories y_n and z_n. A 2 × 2 matrix times (y, z) plus a constant is fitted to their second differences
 //! by least squares. The eigenvalues of the matrix are r − 2 + 1/r.
 
-use crate::evidence::Evidence;
-use crate::particles::{Particles, Y, Z};
+use crate::verification::evidence::Evidence;
+use crate::verification::particles::{Particles, Y, Z};
 use std::f64::consts::PI;
 use tribosweep_mechanics::solver::interface::ContactState;
 use tribosweep_mechanics::solver::interface::law::Law;

@@ -8,9 +8,9 @@
 //! * As the disk gets stiffer at constant density, its modes become so fast that they respond statically.
 //!   Then its deflection under given forces falls as 1/E, and so does the difference from a rigid disk.
 
-use crate::common::advance;
-use crate::elastic::{Below, coarse_scene, drive, free_block, on_block};
-use crate::evidence::Evidence;
+use crate::verification::common::advance;
+use crate::verification::elastic::{Below, coarse_scene, drive, free_block, on_block};
+use crate::verification::evidence::Evidence;
 use tribosweep_mechanics::solver::interface::law::Law;
 use tribosweep_mechanics::solver::material::Material;
 use tribosweep_mechanics::solver::support::load;
@@ -121,7 +121,9 @@ fn action_is_reaction() {
     evidence.found("the worst of 600 steps", worst.1, worst.2, worst.3);
     // The error is that of a sum over the disk's nodes of rows of K and of momenta. The momenta are the
     // impulse of the forces so far, and they are divided by Δt.
-    evidence.judge_exact(crate::common::ROUNDINGS_PER_FORCE * (body.mesh().node_count() * 600) as f64);
+    evidence.judge_exact(
+        crate::verification::common::ROUNDINGS_PER_FORCE * (body.mesh().node_count() * 600) as f64,
+    );
 }
 
 /// Protects: the displacements of the pin after 0.4 ms tend to those on a rigid disk as 1/E.

@@ -8,7 +8,7 @@
 //!   nodes, steady sliding has μ* = μ + s V; the elastic deflection of the pin follows with a delay, so that the difference
 //!   vanishes with the rate of the ramp.
 
-use crate::particles::{Particles, Y, Z};
+use crate::verification::particles::{Particles, Y, Z};
 use tribosweep_mechanics::analysis::program::{Direction, Hysteresis};
 use tribosweep_mechanics::analysis::{JobObserver, JobRecord, Moment, Outcome, Unobserved, drive_at, solve};
 use tribosweep_mechanics::solver::interface::ContactState;

@@ -24,9 +24,9 @@
 //! which raise it, nearly cancel. The remainder is of higher order and of no single order, so the case there
 //! is the overall order from the coarsest mesh on.
 
-use crate::evidence::Evidence;
-use crate::ring_ritz;
-use crate::ring_tools::{RADII_M, RingBody, STEEL, THICKNESS_M};
+use crate::verification::evidence::Evidence;
+use crate::verification::ring_ritz;
+use crate::verification::ring_tools::{RADII_M, RingBody, STEEL, THICKNESS_M};
 use nalgebra::DMatrix;
 use std::f64::consts::{PI, TAU};
 use tribosweep_mechanics::solver::body::ring::RingMesh;

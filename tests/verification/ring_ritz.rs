@@ -6,7 +6,7 @@
 //! with the weight r gives the integrals. The frequencies are upper bounds, and their errors fall
 //! exponentially in N. With n = 0, u_θ decouples, and the torsional modes are found together with the others.
 
-use crate::ring_tools::{RADII_M, STEEL, THICKNESS_M};
+use crate::verification::ring_tools::{RADII_M, STEEL, THICKNESS_M};
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::{PI, TAU};
 

@@ -7,8 +7,8 @@
 //! Exact answer: no force. Isoparametric elements contain all linear fields, whatever their shape. Rounding is
 //! counted in [`RingBody::roundings`].
 
-use crate::evidence::Evidence;
-use crate::ring_tools::{Nodal, RADII_M, RingBody, THICKNESS_M, graded_mesh};
+use crate::verification::evidence::Evidence;
+use crate::verification::ring_tools::{Nodal, RADII_M, RingBody, THICKNESS_M, graded_mesh};
 use tribosweep_mechanics::solver::body::ring::RingMesh;
 
 /// The six rigid motions: translations, then rotations.

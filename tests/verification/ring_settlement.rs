@@ -27,10 +27,10 @@
 //! lengths with its own growth ratio, so the meshes are not exactly similar. Therefore the case is the
 //! overall order over the cube root of the number of elements.
 
-use crate::evidence::Evidence;
-use crate::ring_ritz::gauss;
-use crate::ring_statics::boussinesq_m;
-use crate::ring_tools::{Nodal, RingBody, STEEL, TRACK_RADIUS_M, graded_mesh};
+use crate::verification::evidence::Evidence;
+use crate::verification::ring_ritz::gauss;
+use crate::verification::ring_statics::boussinesq_m;
+use crate::verification::ring_tools::{Nodal, RingBody, STEEL, TRACK_RADIUS_M, graded_mesh};
 use std::f64::consts::PI;
 
 const LOAD_N: f64 = 30.0;

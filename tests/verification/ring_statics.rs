@@ -26,8 +26,8 @@
 //! O(h²), up to a logarithm (A. H. Schatz, L. B. Wahlbin, *Interior maximum norm estimates for finite element
 //! methods*, Math. Comp. 31, 1977). The nearest evaluated node is 4 elements away on the coarsest mesh.
 
-use crate::evidence::Evidence;
-use crate::ring_tools::{RADII_M, RingBody, STEEL, graded_mesh};
+use crate::verification::evidence::Evidence;
+use crate::verification::ring_tools::{RADII_M, RingBody, STEEL, graded_mesh};
 use std::f64::consts::PI;
 use tribosweep_mechanics::solver::body::ring::RingMesh;
 

@@ -6,7 +6,7 @@
 //! elastic objects*, J. Acoust. Soc. Am. 90, 1991). All integrals have a closed form. The frequencies are
 //! upper bounds for every N and converge exponentially in N.
 
-use crate::modes::{MirrorClass, mirror_sign};
+use crate::verification::modes::{MirrorClass, mirror_sign};
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 use tribosweep_mechanics::solver::material::Material;

@@ -4,7 +4,7 @@
 //!   nodes differ by one number, which is the height of the lowest node.
 //! * **From a map** whose points are the nodes it is that map. The heights of a sine wave give the gaps of the wave base.
 
-use crate::evidence::Evidence;
+use crate::verification::evidence::Evidence;
 use tribosweep_mechanics::solver::Model;
 use tribosweep_mechanics::spec::{Base, HeightMap, JobSpec, Roughness};
 

@@ -6,9 +6,9 @@
 //!   falls with the speed: by the damping in proportion to it, and by inertia with its square.
 //! * **The energies** close when the surface lifts the pin and the pin falls back on it: the drive does the work N dh.
 
-use crate::common::{ROUNDINGS_PER_FORCE, advance};
-use crate::evidence::Evidence;
-use crate::particles::{Particles, X, Y, Z, audited_step};
+use crate::verification::common::{ROUNDINGS_PER_FORCE, advance};
+use crate::verification::evidence::Evidence;
+use crate::verification::particles::{Particles, X, Y, Z, audited_step};
 use std::f64::consts::TAU;
 use tribosweep_mechanics::analysis::drive;
 use tribosweep_mechanics::solver::energy::EnergyLedger;

@@ -15,9 +15,9 @@
 //! By these identities the program judges its own μ*. Here they are tested on a system whose onset of flutter
 //! is known exactly.
 
-use crate::evidence::Evidence;
-use crate::mode_coupling::{BODY_Z, NORMAL_N, oscillator, steady};
-use crate::particles::{Y, Z, audited_step};
+use crate::verification::evidence::Evidence;
+use crate::verification::mode_coupling::{BODY_Z, NORMAL_N, oscillator, steady};
+use crate::verification::particles::{Y, Z, audited_step};
 use tribosweep_mechanics::solver::energy::EnergyLedger;
 use tribosweep_mechanics::solver::interface::ContactState;
 use tribosweep_mechanics::solver::interface::law::Law;

@@ -9,8 +9,8 @@
 //! * A tilted pin has the stiffness of the upright one in turned axes.
 //! * A block has the same motion with the operator of general meshes as with its own.
 
-use crate::common::{all_of, definition, pin_material};
-use crate::evidence::Evidence;
+use crate::verification::common::{all_of, definition, pin_material};
+use crate::verification::evidence::Evidence;
 use std::f64::consts::{PI, TAU};
 use tribosweep_mechanics::analysis::drive;
 use tribosweep_mechanics::solver::body::pin::{
@@ -214,7 +214,7 @@ fn a_linear_displacement_causes_no_force_inside() {
         evidence.found(name, largest(true) / largest(false), 0.0, 1.0);
     }
     // A row has 81 products of at most E u each; u is a hundred times the differences of u that make the stress.
-    evidence.judge_exact(100.0 * crate::common::ROUNDINGS_PER_FORCE);
+    evidence.judge_exact(100.0 * crate::verification::common::ROUNDINGS_PER_FORCE);
 }
 
 /// Protects: the frame of a tilted pin. Its stiffness is that of the upright pin in turned axes, and its gaps are those of a turned
@@ -248,7 +248,7 @@ fn a_tilted_pin_is_a_turned_pin() {
         .map(|slave| (slave.initial_gap_m - (slave.position_m[1] / cos + 0.0075) * sin).abs())
         .fold(0.0, f64::max);
     evidence.found("gap", worst / (0.015 * sin), 0.0, 1.0);
-    evidence.judge_exact(10.0 * crate::common::ROUNDINGS_PER_FORCE);
+    evidence.judge_exact(10.0 * crate::verification::common::ROUNDINGS_PER_FORCE);
 }
 
 /// Protects: the operator of general meshes. A block in two regions of one material moves like the block, under a clamp of the top face and
@@ -265,7 +265,7 @@ fn a_block_moves_alike_with_both_operators() {
     }
     // Rounding of the forces, some 170 units, adds up in every step. Contact makes the motion sensitive to it: an error grows about
     // linearly while nodes open and close in the same step.
-    evidence.judge_exact(crate::common::ROUNDINGS_PER_FORCE * STEPS as f64);
+    evidence.judge_exact(crate::verification::common::ROUNDINGS_PER_FORCE * STEPS as f64);
 }
 
 /// Steps of the comparison of operators.

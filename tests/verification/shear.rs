@@ -19,11 +19,11 @@
 //! compression that gives p. Poisson's ratio −0.2 keeps the base's own normal mode below its limit at this
 //! step. The shear problem depends only on G and ρ, which are the pin's.
 
-use crate::common::{
+use crate::verification::common::{
     COLUMN_AREA_M2, COLUMN_HEIGHT_M, advance, all_of, column_mesh, definition, level, level_ties,
     pin_material,
 };
-use crate::evidence::Evidence;
+use crate::verification::evidence::Evidence;
 use tribosweep_mechanics::solver::interface::ContactState;
 use tribosweep_mechanics::solver::interface::law::Law;
 use tribosweep_mechanics::solver::material::Material;

@@ -9,9 +9,9 @@
 //! **The discrete solution** is that of the rigid block of B7 in the plane's frame. The block stops at the
 //! step nearest to the exact time, and d(t_n − t)²/2 is missing along w.
 
-use crate::common::advance;
-use crate::evidence::Evidence;
-use crate::particles::{Particles, X, Y, Z};
+use crate::verification::common::advance;
+use crate::verification::evidence::Evidence;
+use crate::verification::particles::{Particles, X, Y, Z};
 use tribosweep_mechanics::solver::interface::ContactState;
 use tribosweep_mechanics::solver::interface::law::Law;
 use tribosweep_mechanics::solver::{Drive, State, TimeStep};

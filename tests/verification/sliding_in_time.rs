@@ -8,7 +8,7 @@
 //! them. At a tenth of the stability limit, ωΔt is below 0.05 for the modes here, so rates of 1/100 of ω change by less
 //! than 1 %.
 
-use crate::sliding_modes::{SURE, scene};
+use crate::verification::sliding_modes::{SURE, scene};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use tribosweep_mechanics::analysis;

@@ -8,8 +8,8 @@
 //! * **Runs in time** grow and decay as the eigenvalues say, as in B31.
 //! * **A crowned base** touches the disk where a slow run touches it.
 
-use crate::sliding_in_time::Pin;
-use crate::sliding_modes::{EXACT, scene};
+use crate::verification::sliding_in_time::Pin;
+use crate::verification::sliding_modes::{EXACT, scene};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use tribosweep_mechanics::analysis;

@@ -6,8 +6,8 @@
 //! * **A disk alone** has modes with three waves around. Their frequency comes from one column of nodes of its own K and M. A pin on a
 //!   nodal line leaves one of the two such modes as it is.
 
-use crate::elastic::coarse_scene;
-use crate::sliding_modes::{EXACT, scene};
+use crate::verification::elastic::coarse_scene;
+use crate::verification::sliding_modes::{EXACT, scene};
 use faer::{Mat, Side, c64};
 use std::f64::consts::TAU;
 use tribosweep_mechanics::analysis;

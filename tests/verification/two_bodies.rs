@@ -15,9 +15,9 @@
 //! Below its limit the scheme disperses fronts, which gives order ⅔ (see `bar`). Action equals reaction at
 //! every step, so momentum is conserved to rounding. With several stages it is formed with M̃ = M B⁻¹.
 
-use crate::common::{FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, normal_force_n};
-use crate::elastic::{Below, free_block, momentum, on_block};
-use crate::evidence::Evidence;
+use crate::verification::common::{FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, normal_force_n};
+use crate::verification::elastic::{Below, free_block, momentum, on_block};
+use crate::verification::evidence::Evidence;
 use tribosweep_mechanics::solver::energy::EnergyLedger;
 use tribosweep_mechanics::solver::material::Material;
 use tribosweep_mechanics::solver::{ModelDefinition, State, TimeStep};

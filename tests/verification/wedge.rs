@@ -9,9 +9,9 @@
 //! The acceleration beyond the limit is linear in F, so two runs give the limit by extrapolation to zero
 //! acceleration. There is no discretisation error; only rounding remains.
 
-use crate::common::advance;
-use crate::evidence::Evidence;
-use crate::particles::{Particles, Y, Z};
+use crate::verification::common::advance;
+use crate::verification::evidence::Evidence;
+use crate::verification::particles::{Particles, Y, Z};
 use tribosweep_mechanics::solver::interface::ContactState;
 use tribosweep_mechanics::solver::interface::law::Law;
 use tribosweep_mechanics::solver::{Drive, State, TimeStep};

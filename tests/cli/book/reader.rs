@@ -6,8 +6,8 @@ use std::path::Path;
 use std::process::Command;
 
 use super::steps::{Step, steps, whole_study};
-use crate::server_database::ServerDatabase;
-use crate::support::{Folder, TRIBOSWEEP};
+use crate::cli::support::{Folder, TRIBOSWEEP};
+use crate::server::ServerDatabase;
 use crate::tools;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");

@@ -2,7 +2,7 @@
 
 use tribosweep::queue::{Absorbed, JobState, QueueError, Replace, Scope, Shard, StudyRow};
 
-use crate::support::{Sandbox, claim, counts, done, failed, finish, job, labelled, of, study};
+use crate::orchestration::support::{Sandbox, claim, counts, done, failed, finish, job, labelled, of, study};
 
 on_both_databases! {
     a_copy_is_the_same,

@@ -7,7 +7,9 @@ use tribosweep::queue::{
     Claim, ClaimedJob, Counts, FinishedOutcome, JobState, NewJob, NewStudy, Queue, Retried, Retry, Scope,
 };
 
-use crate::support::{Sandbox, claim, counts, dead_worker, done, failed, finish, job, keys, of, study};
+use crate::orchestration::support::{
+    Sandbox, claim, counts, dead_worker, done, failed, finish, job, keys, of, study,
+};
 
 on_both_databases! {
     a_claim_is_of_one_batch,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use tribosweep::queue::{Finished, Queue, QueueError};
 
-use crate::support::{Sandbox, claim, counts, done, of, study};
+use crate::orchestration::support::{Sandbox, claim, counts, done, of, study};
 
 /// A queue whose worker has stored the result of `x` and has that of `y` ready, while it runs `z`.
 async fn at_work(sandbox: &Sandbox) -> (Queue, Finished) {

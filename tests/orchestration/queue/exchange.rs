@@ -5,7 +5,9 @@ use std::thread;
 
 use tribosweep::queue::{Claim, Finished, FinishedOutcome, JobState, NewStudy, QueueError, Scope};
 
-use crate::support::{Sandbox, block_on, claim, counts, done, failed, finish, job, keys, of, study};
+use crate::orchestration::support::{
+    Sandbox, block_on, claim, counts, done, failed, finish, job, keys, of, study,
+};
 
 on_both_databases! {
     the_most_expensive_job_comes_first,

@@ -2,7 +2,7 @@
 
 use tribosweep::queue::{Garbage, QueueError, Replace, Replaced, Retry, Scope, Shard, Submitted, TakenBack};
 
-use crate::support::{
+use crate::orchestration::support::{
     Sandbox, claim, counts, dead_worker, done, failed, finish, foreign_worker, keys, of, study,
 };
 

@@ -4,7 +4,7 @@ use tribosweep::queue::{
     FinishedOutcome, Integrity, JobState, Pages, Queue, QueueError, Scope, Worker, examine,
 };
 
-use crate::support::{Engine, Sandbox, claim, counts, done, failed, finish, job, of, study};
+use crate::orchestration::support::{Engine, Sandbox, claim, counts, done, failed, finish, job, of, study};
 
 on_both_databases! {
     results_have_digests,

@@ -8,7 +8,7 @@ use std::thread;
 
 use tribosweep::queue::{Claim, Clock, Finished, Location, Queue, QueueError, Scope, TakenBack, Worker};
 
-use crate::support::{Engine, Sandbox, counts, done, foreign_worker, keys, study};
+use crate::orchestration::support::{Engine, Sandbox, counts, done, foreign_worker, keys, study};
 
 /// When the relay cuts the connection, once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use sqlx::migrate::{Migration, MigrationType, Migrator};
 use sqlx::{Connection, SqlSafeStr, SqliteConnection};
 use tribosweep::queue::{JobState, Queue, Settings, TakenBack};
 
-use crate::support::{Sandbox, claim, counts, done, finish, keys, of};
+use crate::orchestration::support::{Sandbox, claim, counts, done, finish, keys, of};
 
 /// Data of the first schema: a job in each state, a released job, two jobs that studies share, a job that is twice in a
 /// study, a job that no study refers to, and results of several attempts.

@@ -8,7 +8,7 @@ use std::thread;
 use sqlx::Connection;
 use tribosweep::queue::{Clock, Queue, QueueError};
 
-use crate::support::{Sandbox, block_on, counts, of, study};
+use crate::orchestration::support::{Sandbox, block_on, counts, of, study};
 
 async fn error_of(path: &Path) -> QueueError {
     Queue::open(path, Clock::OfDatabase).await.expect_err("opening should fail")

@@ -2,7 +2,9 @@
 
 use tribosweep::queue::{ActiveWorkers, FinishedOutcome, ProvenanceGroup, QueueError, Scope, Worker};
 
-use crate::support::{Sandbox, claim, dead_worker, done, failed, finish, foreign_worker, job, of, study};
+use crate::orchestration::support::{
+    Sandbox, claim, dead_worker, done, failed, finish, foreign_worker, job, of, study,
+};
 
 on_both_databases! {
     active_workers_are_counted,

@@ -4,7 +4,7 @@ use tribosweep::queue::{
     FinishedOutcome, NewStudy, PlanClaim, PlanState, Planned, Queue, Replace, Retry, Scope, Shard,
 };
 
-use crate::support::{
+use crate::orchestration::support::{
     Sandbox, claim, counts, dead_worker, done, failed, finish, foreign_worker, job, keys, of, study,
 };
 

@@ -4,7 +4,7 @@ use tribosweep::queue::{
     Claim, Integrity, JobState, Queue, QueueError, Rows, Scope, StudyDocument, StudyRow, StudySummary,
 };
 
-use crate::support::{Sandbox, claim, counts, done, failed, finish, labelled, of, study};
+use crate::orchestration::support::{Sandbox, claim, counts, done, failed, finish, labelled, of, study};
 
 on_both_databases! {
     studies_are_listed_with_their_counts,

@@ -2,7 +2,7 @@
 
 use tribosweep::queue::{FinishedOutcome, JobState, Queue, Retry, Scope, Settings, TakenBack, Worker};
 
-use crate::support::{
+use crate::orchestration::support::{
     Engine, Sandbox, claim, counts, dead_worker, done, failed, finish, foreign_worker, keys, study,
 };
 

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use tribosweep::queue::{Claim, ClaimedJob, Finished, FinishedOutcome, NewJob, NewStudy, Scope};
 
-use crate::support::{Engine, Sandbox, claim, counts, job, keys, of};
+use crate::orchestration::support::{Engine, Sandbox, claim, counts, job, keys, of};
 
 on_both_databases! {
     a_hundred_thousand_jobs_are_planned,

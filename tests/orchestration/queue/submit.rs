@@ -2,7 +2,7 @@
 
 use tribosweep::queue::{Counts, QueueError, Replaced, Scope, Submitted};
 
-use crate::support::{Sandbox, claim, counts, done, failed, finish, job, of, study};
+use crate::orchestration::support::{Sandbox, claim, counts, done, failed, finish, job, of, study};
 
 on_both_databases! {
     submitting_twice_adds_nothing,

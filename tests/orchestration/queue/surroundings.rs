@@ -7,7 +7,7 @@ use std::time::Duration;
 use tribosweep::queue::{Queue, QueueError, Scope, Settings, examine};
 
 use crate::mount::Mount;
-use crate::support::{Sandbox, claim, counts, done, finish, of, study};
+use crate::orchestration::support::{Sandbox, claim, counts, done, finish, of, study};
 
 fn impatient() -> Settings {
     Settings { busy_timeout: Duration::from_millis(50), ..Settings::default() }
@@ -161,7 +161,7 @@ async fn a_damaged_file() {
 #[tokio::test]
 async fn the_examination_sees_workers() {
     let sandbox = Sandbox::new();
-    let mut dead = sandbox.open_as(&crate::support::dead_worker()).await;
+    let mut dead = sandbox.open_as(&crate::orchestration::support::dead_worker()).await;
     let mut alive = sandbox.open().await;
     alive.submit(&study("a", &["x", "y", "z"])).await.unwrap();
     claim(&mut dead, Scope::All, 2).await;

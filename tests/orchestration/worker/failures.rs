@@ -6,7 +6,7 @@ use tribosweep::sweep::job_key;
 use tribosweep::worker::{Interrupt, SilentProgress, WorkError, WorkOptions, work};
 
 use super::{Recorder, job, row, several, solvable, spec, submit};
-use crate::support::{Sandbox, claim, counts, finish, of};
+use crate::orchestration::support::{Sandbox, claim, counts, finish, of};
 
 /// Protects: whatever is wrong with a job (its text, its values, its run), only that job fails, with the reason, which
 /// the progress display receives; the sweep goes on to its end.

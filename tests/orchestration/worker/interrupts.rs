@@ -6,7 +6,7 @@ use tribosweep::queue::{JobState, Scope, TakenBack};
 use tribosweep::worker::{Interrupt, SilentProgress, WorkOptions, work};
 
 use super::{Recorder, row, several, submit};
-use crate::support::{Sandbox, claim, counts, dead_worker};
+use crate::orchestration::support::{Sandbox, claim, counts, dead_worker};
 
 /// Protects: a worker that is asked to stop before it starts claims nothing, and reports that work is left.
 #[tokio::test]

@@ -7,7 +7,7 @@ use tribosweep::queue::{Queue, Scope, Settings};
 use tribosweep::worker::{Interrupt, WorkOptions, work};
 
 use super::{Recorder, several, solvable, spec, submit};
-use crate::support::Sandbox;
+use crate::orchestration::support::Sandbox;
 
 /// A queue whose requests fail soon, so that the worker has to repeat them.
 async fn queue_with_short_timeout(sandbox: &Sandbox) -> Queue {

@@ -8,7 +8,7 @@ use tribosweep::spec::JobSpec;
 use tribosweep::worker::{Interrupt, SilentProgress, WorkOptions, work};
 
 use super::{Recorder, several, submit};
-use crate::support::{Sandbox, counts, of};
+use crate::orchestration::support::{Sandbox, counts, of};
 
 /// Protects: progress only grows, the total stays the same, no more jobs run than the threads have lanes, and the end is
 /// shown once, with no job left.

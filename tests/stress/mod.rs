@@ -15,8 +15,6 @@ mod ending;
 mod generator;
 mod long;
 mod modes;
-#[path = "../support/random.rs"]
-mod random;
 mod scenes;
 mod simplify;
 mod summary;

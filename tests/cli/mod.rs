@@ -15,19 +15,11 @@ mod guards;
 mod hostile;
 mod inspect;
 mod interruption;
-#[path = "../support/mount.rs"]
-mod mount;
 mod nightly;
 mod one_job;
 mod points;
 mod python;
-#[path = "../support/random.rs"]
-mod random;
-#[path = "../support/report_files.rs"]
-mod report_files;
 mod server;
-#[path = "../support/server.rs"]
-mod server_database;
 mod several;
 mod shards;
 mod sharing;
@@ -38,9 +30,5 @@ mod support;
 mod surroundings;
 mod sweep;
 mod texts;
-#[path = "../support/tools.rs"]
-mod tools;
 mod upkeep;
-#[path = "../support/walk.rs"]
-mod walk;
 mod watch;

@@ -11,8 +11,6 @@ mod interruption;
 mod mesh_error;
 mod nested;
 mod on_elastic_disk;
-#[path = "../support/random.rs"]
-mod random;
 mod signals;
 mod similarity;
 mod single;
