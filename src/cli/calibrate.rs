@@ -9,8 +9,8 @@ use super::submit::{Priority, submit};
 use super::work::{Checkpoints, Retries, Threads, options, work_on};
 use crate::publish::value::significant;
 use crate::queue::{Clock, Location, Queue, Shard};
-use crate::report::Calibration as Found;
-use crate::study::{Calibration, DiscrepancyGiven};
+use crate::report::{Calibration as Found, Nearest};
+use crate::study::{Calibration, DiscrepancyGiven, Parameter};
 use crate::sweep::{self, CalibrationData, Plan, ReportRequest};
 use serde_json::json;
 use std::path::PathBuf;
@@ -55,12 +55,14 @@ pub(crate) struct Args {
 }
 
 fn named_number(text: &str) -> Result<(String, f64), String> {
-    let parts =
-        text.split_once('=').and_then(|(name, value)| Some((name.trim(), value.trim().parse().ok()?)));
-    match parts {
-        Some((name, value)) if f64::is_finite(value) => Ok((name.to_owned(), value)),
-        _ => Err("expected NAME=VALUE with a number in the unit of the name".to_owned()),
-    }
+    let expected = || "expected NAME=VALUE with a number".to_owned();
+    let (name, value) = text.split_once('=').ok_or_else(expected)?;
+    let name = name.trim();
+    let value = match Parameter::find(name) {
+        Some(parameter) => parameter.number(value.trim())?,
+        None => value.trim().parse().map_err(|_| expected())?,
+    };
+    Ok((name.to_owned(), value))
 }
 
 /// Refuses a point that has not one value for each free parameter.
@@ -158,7 +160,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
                 point => sweep::read_implausibility(queue, name, &content.rows, point).await?,
             };
             if let Some(found) = found.as_ref().and_then(|own| own.calibration.as_ref()) {
-                print(&if args.json { as_json(found, at) } else { as_text(found, at) })?;
+                print(&if args.json { as_json(found, at.as_ref()) } else { as_text(found, at.as_ref()) })?;
             }
             report::write(queue, &content, &args.out.of(name), None).await?;
             queue.ensure_place().await?;
@@ -169,26 +171,23 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
 }
 
 /// What was found. `at` is the implausibility of the point that was asked for, with the cutoff.
-fn as_json(found: &Found, at: Option<[f64; 2]>) -> String {
+fn as_json(found: &Found, at: Option<&(Nearest, f64)>) -> String {
     let mut answer = found.as_json();
-    if let Some([implausibility, cutoff]) = at {
-        answer["at"] = json!({ "implausibility": implausibility, "ruled_out": implausibility > cutoff });
+    if let Some((at, cutoff)) = at {
+        let place: serde_json::Map<_, _> = at.place.iter().cloned().collect();
+        answer["at"] = json!({
+            "implausibility": at.implausibility,
+            "ruled_out": at.implausibility > *cutoff,
+            "most_against": { "of": at.of, "at": place },
+        });
     }
     format!("{answer}\n")
 }
 
-fn as_text(found: &Found, at: Option<[f64; 2]>) -> String {
-    let of_point = at.map(|[implausibility, cutoff]| {
-        if implausibility.is_infinite() {
-            return "The point of --at is ruled out: the runs around it squeal where the machine does not, or the other way round."
-                .to_owned();
-        }
-        let is_out = if implausibility > cutoff { "ruled out" } else { "not ruled out" };
-        format!(
-            "The point of --at is {is_out}: its implausibility is {}, and the cutoff is {}.",
-            significant(implausibility, 2),
-            significant(cutoff, 2)
-        )
+fn as_text(found: &Found, at: Option<&(Nearest, f64)>) -> String {
+    let of_point = at.map(|(at, cutoff)| {
+        let is_out = if at.implausibility > *cutoff { "ruled out" } else { "not ruled out" };
+        format!("The point of --at is {is_out}: it {} (cutoff {}).", at.in_words(), significant(*cutoff, 2))
     });
     found.in_words().into_iter().chain(of_point).map(|sentence| sentence + "\n").collect()
 }

@@ -43,6 +43,10 @@ pub(crate) struct Args {
     data: Vec<PathBuf>,
     #[command(flatten)]
     bins: Bins,
+    /// A study that varies what could explain the differences, such as a grid of moduli and friction coefficients. The verdict then says
+    /// which of its parameters could bring the first study nearer, and by how much.
+    #[arg(long, value_name = "STUDY")]
+    sensitivity: Option<String>,
     #[command(flatten)]
     axes: Axes,
     #[command(flatten)]
@@ -133,6 +137,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         studies,
         data: args.data.clone(),
         bins: args.bins.number(),
+        variation: args.sensitivity.as_deref().map(sweep::study_name).transpose()?,
         x: x.clone(),
         by: by.clone(),
         y: y.clone(),

@@ -7,6 +7,7 @@ use crate::publish::chart::palette::{BLUE, GREY, VERMILLION};
 use crate::publish::chart::{Axis, Chart, Entry, Layer, Marker, Panel, Point, Scale, Shape};
 use crate::publish::table::{Column, FileColumns, Table};
 use crate::publish::value::{self, count};
+use crate::units::name_and_unit;
 use serde_json::{Map, Value, json};
 
 /// What a calibration has found.
@@ -38,6 +39,8 @@ pub struct Calibration {
     pub is_known: bool,
     /// Values of runs that squeal whose error of the mesh is not known, and all of them.
     pub unknown_mesh: [usize; 2],
+    /// Measured values that runs which squeal do not have, and all that they could have.
+    pub without_values: [usize; 2],
 }
 
 /// A free parameter.
@@ -68,9 +71,11 @@ pub struct Fit {
     pub compared: usize,
     /// Points where it squeals and steady sliding was measured, or the other way round.
     pub other_state: usize,
+    /// Whether it is ruled out itself: too far away, or in another state.
+    pub is_ruled_out: bool,
 }
 
-/// The least implausible place if everything is ruled out.
+/// A place, and the measured value that speaks most against it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nearest {
     /// The values of the free parameters.
@@ -153,6 +158,19 @@ pub(super) fn described() -> [FileColumns; 2] {
     ]
 }
 
+impl Nearest {
+    /// How far the place is from which measured value, as the end of a sentence.
+    pub fn in_words(&self) -> String {
+        let place: Vec<String> = self.place.iter().map(|(name, value)| assignment(name, value)).collect();
+        let at = if place.is_empty() { String::new() } else { format!(" at {}", place.join(", ")) };
+        if self.implausibility.is_infinite() {
+            return format!("squeals{at} where the machine does not, or the other way round");
+        }
+        let distance = value::significant(self.implausibility, 2);
+        format!("is {distance} standard deviations away from {}{at}", self.of)
+    }
+}
+
 impl Calibration {
     /// The tables.
     pub(super) fn tables(&self) -> Vec<FindingsTable> {
@@ -205,18 +223,10 @@ impl Calibration {
         let mut words = Vec::new();
         let all = format!("{} ({})", count(self.points as u64, "point"), count(self.jobs as u64, "job"));
         if let Some(nearest) = &self.nearest {
-            let place: Vec<String> =
-                nearest.place.iter().map(|(name, value)| assignment(name, value)).collect();
-            let at = if place.is_empty() { String::new() } else { format!(" at {}", place.join(", ")) };
-            let why = if nearest.implausibility.is_infinite() {
-                format!("squeals{at} where the machine does not, or the other way round")
-            } else {
-                let distance = value::significant(nearest.implausibility, 2);
-                format!("is {distance} standard deviations away from {}{at}", nearest.of)
-            };
             words.push(format!(
-                "No point of these ranges explains the data, after {all}. The nearest one, {}, {why}.",
-                self.point(&nearest.values)
+                "No point of these ranges explains the data, after {all}. The nearest one, {}, {}.",
+                self.point(&nearest.values),
+                nearest.in_words()
             ));
         } else if self.points > 0 {
             let share = value::significant(100.0 * self.share, 2);
@@ -265,6 +275,12 @@ impl Calibration {
                 value::fixed(100.0 * check.within_two as f64 / check.values as f64, 0)
             ));
         }
+        let [missing, values] = self.without_values;
+        if missing > 0 {
+            words.push(format!(
+                "{missing} of {values} values of runs that squeal are missing, because these runs have no period; they rule out nothing."
+            ));
+        }
         let [unknown, values] = self.unknown_mesh;
         if unknown > 0 {
             let counts = if unknown == values {
@@ -299,7 +315,12 @@ impl Calibration {
                 value::significant(best.root_mean_square, 2)
             )
         };
-        format!("The best run, {point}, {distance}{other}.")
+        let is_out = if best.is_ruled_out && self.nearest.is_none() {
+            " It is ruled out itself: no run lies in the region yet, and more points would have one there."
+        } else {
+            ""
+        };
+        format!("The best run, {point}, {distance}{other}.{is_out}")
     }
 
     /// The answer for programs.
@@ -327,15 +348,19 @@ impl Calibration {
         let inside = Marker::new(Shape::Circle, BLUE).sized(2.0);
         let run = Marker::new(Shape::Circle, GREY).sized(3.5).hollow(true);
         let best = Marker::new(Shape::Star, VERMILLION).sized(7.0);
+        let unit = |free: &Free| value::multiple(name_and_unit(&free.name).1, free.range[1].abs());
         let scale = |free: &Free| {
-            let values: Vec<Value> = free.range.iter().map(|x| Value::from(*x)).collect();
-            Scale::new(&parameters::head(&free.name).name, Axis::for_values(&values, Some(free.is_log)))
+            let (factor, unit) = unit(free);
+            let values: Vec<Value> = free.range.iter().map(|x| Value::from(x / factor)).collect();
+            let name = parameters::symbol(&free.name).unwrap_or(name_and_unit(&free.name).0);
+            let label = if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
+            Scale::new(&label, Axis::for_values(&values, Some(free.is_log)))
         };
         let mut panels = Vec::new();
         for (second, y) in self.free.iter().enumerate() {
             for (first, x) in self.free.iter().enumerate().take(second) {
                 let points = |of: &mut dyn Iterator<Item = &Vec<f64>>, marker| {
-                    let at = |values: &Vec<f64>| (values[first], values[second]);
+                    let at = |values: &Vec<f64>| (values[first] / unit(x).0, values[second] / unit(y).0);
                     Layer::Points(
                         of.map(|values| Point { at: at(values), error: 0.0, marker, tip: None }).collect(),
                     )

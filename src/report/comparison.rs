@@ -9,7 +9,9 @@ use super::parameters::SOURCE;
 use super::reference_curves::{
     Curves, Place, alike, position_in, reference_at, reference_curves, squeals_at,
 };
+use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
+use super::sensitivity::{Mover, movers};
 use super::view::View;
 use crate::publish::chart::Axis;
 use crate::publish::value;
@@ -27,12 +29,20 @@ pub(super) struct Comparison {
     pub notes: Vec<String>,
     /// Of each source none of whose points can be compared with the reference, a sentence.
     pub unmatched: Vec<String>,
+    /// The study that shows what could move a quantity, and what its parameters do to each quantity.
+    pub movers: Option<Movers>,
     /// All differences.
     pub differences: Vec<Difference>,
     /// Names of the parameters: those of the groups, of the curves and of the axis.
     pub names: Vec<String>,
     /// Short names with units of the same parameters.
     labels: Vec<String>,
+}
+
+/// What the parameters of a study do to each quantity.
+pub(super) struct Movers {
+    pub study: String,
+    pub of: Vec<(&'static Scalar, Vec<Mover>)>,
 }
 
 /// One quantity of a point, and of the reference at the same place.
@@ -95,6 +105,7 @@ impl Comparison {
             compared_squeals: 0,
             notes: view.notes.clone(),
             unmatched: Vec::new(),
+            movers: None,
             differences: Vec::new(),
             labels: names.iter().map(|name| layout.dimension(name).label.clone()).collect(),
             names: names.iter().map(|&name| name.to_owned()).collect(),
@@ -124,6 +135,24 @@ impl Comparison {
             (order(&found.source), scalar, found.curve.clone())
         });
         Some(comparison)
+    }
+
+    /// Takes what the parameters of a study do to each quantity, from its name and jobs. The parameter along the axis explains no
+    /// difference.
+    pub fn explain_by(&mut self, study: Option<(&str, &[JobRow])>) {
+        let Some((name, rows)) = study else { return };
+        let axis = self.names.last();
+        let of = |scalar: &'static Scalar| {
+            let all = movers(rows, scalar).into_iter().filter(|own| Some(&own.parameter) != axis);
+            (scalar, all.collect())
+        };
+        let mut scalars: Vec<&'static Scalar> = Vec::new();
+        for found in &self.differences {
+            if !scalars.contains(&found.scalar) {
+                scalars.push(found.scalar);
+            }
+        }
+        self.movers = Some(Movers { study: name.to_owned(), of: scalars.into_iter().map(of).collect() });
     }
 
     #[expect(clippy::too_many_arguments, reason = "the state of one loop")]

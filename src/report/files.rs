@@ -118,18 +118,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         .then(|| Analysis::of(report.stability, &stability_rows, report.along, view));
     let of_stability = analysis.as_ref().map(|own| stability::write_files(own, &mut folder)).transpose()?;
     let stability = analysis.as_ref().zip(of_stability.as_ref());
-    let layout_of_all =
-        shown.as_ref().map(|_| Layout::of(given.rows.iter().filter(|row| !row.is_at_boundary()), view));
-    let mut comparison = Comparison::of(layout_of_all.as_ref().unwrap_or(&layout), view);
-    if let (Some(comparison), Some(shown)) = (&mut comparison, &shown) {
-        let [all, part] =
-            [given.rows, shown.as_slice()].map(|rows| rows.iter().filter(|row| row.is_measured()).count());
-        let note = format!(
-            "Tables and figures show {part} of the {all} measured points, evenly through the files; this summary, differences.csv and \
-             jobs.csv have all."
-        );
-        comparison.notes.extend((part < all).then_some(note));
-    }
+    let comparison = compared(report, given.rows, shown.as_deref(), &layout);
     if let Some(comparison) = &comparison {
         folder.write_table(&comparison_files::table(comparison))?;
         if let Some(chart) = figure::differences::draw(comparison) {
@@ -156,6 +145,27 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let unmatched = comparison.map_or_else(Vec::new, |comparison| comparison.unmatched);
     let files = folder.finish()?;
     Ok(Written { files, verdicts, contradictions, unmatched })
+}
+
+/// The differences of all `rows`, of which the report may have `shown` some only, in `layout`; none if there is only one source.
+fn compared(
+    report: &Report,
+    rows: &[JobRow],
+    shown: Option<&[JobRow]>,
+    layout: &Layout,
+) -> Option<Comparison> {
+    let of_all = shown.map(|_| Layout::of(rows.iter().filter(|row| !row.is_at_boundary()), report.view));
+    let mut comparison = Comparison::of(of_all.as_ref().unwrap_or(layout), report.view)?;
+    if let Some(shown) = shown {
+        let [all, part] = [rows, shown].map(|rows| rows.iter().filter(|row| row.is_measured()).count());
+        let note = format!(
+            "Tables and figures show {part} of the {all} measured points, evenly through the files; this summary, differences.csv and \
+             jobs.csv have all."
+        );
+        comparison.notes.extend((part < all).then_some(note));
+    }
+    comparison.explain_by(report.variation);
+    Some(comparison)
 }
 
 /// Writes the figures of the plots, and returns those that have room in the page with their drawings.

@@ -33,6 +33,9 @@ pub struct Report<'a> {
     pub along: &'a Along,
     /// What the only study found that grows; none for other studies.
     pub findings: Option<&'a Findings>,
+    /// The jobs of a study that varies what could bring the first study nearer to the others, and its name; none if there is no such
+    /// study.
+    pub variation: Option<(&'a str, &'a [JobRow])>,
     /// When it is written, in milliseconds since 1970-01-01 UTC.
     pub written_ms: i64,
     /// After how many seconds the page reloads itself; none for a page that is not going to be written again.

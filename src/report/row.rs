@@ -46,6 +46,9 @@ pub struct JobNumerics {
     pub beta2: f64,
     /// Stiffness-proportional damping β_R \[s\].
     pub beta_r_s: f64,
+    /// Mass-proportional damping α_R \[1/s\], which belongs to the case.
+    #[serde(default)]
+    pub alpha_r_per_s: f64,
     /// Time step as a fraction of the stability limit; none where the time step itself is given.
     pub safety_factor: Option<f64>,
     /// Largest simulated time \[s\] of the run.

@@ -1,7 +1,13 @@
 //! What a comparison says first: how far the simulation is from what was measured, and in which direction.
 
-use super::comparison::{Comparison, Difference};
-use crate::publish::value::{count, fixed};
+use super::comparison::{Comparison, Difference, Movers};
+use super::parameters::{in_words, symbol};
+use super::sensitivity::Mover;
+use crate::publish::value::{count, fixed, significant_number};
+use crate::units::name_and_unit;
+
+/// A parameter that moves a quantity by less than this share of a difference hardly explains it.
+const MOVES: f64 = 0.1;
 
 /// Differences within so many standard errors agree.
 const AGREE: f64 = 2.0;
@@ -70,7 +76,46 @@ impl Comparison {
         } else {
             format!("; within two standard errors at {within} of {}", judged.len())
         };
-        Some(format!("{what}: {deviates}{errors}."))
+        let one_way = least > 0.0 || most < 0.0;
+        let moved = one_way.then(|| self.moved_by(first, middle, own)).flatten().unwrap_or_default();
+        Some(format!("{what}: {deviates}{errors}.{moved}"))
+    }
+
+    /// The parameters that could bring a quantity nearer, in a sentence. `deviation` is how far it is away.
+    fn moved_by(&self, first: &Difference, deviation: f64, own: &str) -> Option<String> {
+        if *own != self.reference {
+            return None;
+        }
+        let Movers { study, of } = self.movers.as_ref()?;
+        let (_, movers) = of.iter().find(|(scalar, _)| *scalar == first.scalar)?;
+        let least = MOVES * deviation.abs();
+        let (strong, weak): (Vec<_>, Vec<_>) = movers.iter().partition(|own| own.change.abs() >= least);
+        let way = if deviation > 0.0 { "lower" } else { "raise" };
+        let one = |own: &&Mover| {
+            let is_smaller = (own.change > 0.0) == (deviation > 0.0);
+            let [from, to] = if is_smaller { [own.ends[1], own.ends[0]] } else { own.ends };
+            let name = symbol(&own.parameter).unwrap_or(name_and_unit(&own.parameter).0);
+            let [from, to] = [from, to].map(|x| in_words(&own.parameter, &significant_number(x, 4)));
+            let size = if is_smaller { "smaller" } else { "larger" };
+            format!("a {size} {name} ({from} to {to}: {})", signed(-own.change.abs().copysign(deviation)))
+        };
+        let names = |of: &[&Mover]| {
+            let names: Vec<&str> = of
+                .iter()
+                .map(|own| symbol(&own.parameter).unwrap_or(name_and_unit(&own.parameter).0))
+                .collect();
+            names.join(", ")
+        };
+        let weak = match weak.as_slice() {
+            [] => String::new(),
+            some => format!(" Hardly: {}.", names(some)),
+        };
+        Some(if strong.is_empty() {
+            format!(" Nothing that {study} varies moves it by a tenth of that.")
+        } else {
+            let strong: Vec<String> = strong.iter().map(one).collect();
+            format!(" What could {way} it, by {study}: {}.{weak}", strong.join(", "))
+        })
     }
 }
 

@@ -29,6 +29,8 @@ pub struct ModelDefinition {
     pub beta2: f64,
     /// Stiffness-proportional damping `β_R` \[s\].
     pub beta_r_s: f64,
+    /// Mass-proportional damping `α_R` \[1/s\] of the pin.
+    pub alpha_r_per_s: f64,
     /// The time step.
     pub time_step: TimeStep,
 }
@@ -66,6 +68,7 @@ impl Model {
             target,
             beta2,
             beta_r_s,
+            alpha_r_per_s,
             time_step,
         } = definition;
         let (target, surface_motion) = unstepped(target, &mesh, &supports, beta2)?;
@@ -75,7 +78,7 @@ impl Model {
         let pin = PinBody::new(mesh, materials, stiffness, freedoms, acted_on)?;
         let interface = Interface::new(&pin, &surface_motion);
 
-        let of_block = Bound { omega_max_rad_s: pin.omega_max_rad_s(), ..Bound::default() };
+        let of_block = Bound { omega_max_rad_s: pin.omega_max_rad_s(), damping_per_s: alpha_r_per_s };
         let bound =
             supports.iter().fold(of_block, |bound, support| bound.and(support.bound(pin.masses_kg())));
         let pin_limit = bound.time_step_limit_s(beta2, beta_r_s);
@@ -103,7 +106,7 @@ impl Model {
             load,
             interface,
             target,
-            scheme: Scheme { beta2, beta_r_s, time_step_s },
+            scheme: Scheme { beta2, beta_r_s, alpha_r_per_s, time_step_s },
             time_step_limit_s: limit,
             clamp_width_m: 0.0,
         })

@@ -1,9 +1,9 @@
 //! The β₂ method (Newmark with β = 0, γ = β₂; the paper's equation \[2\]).
 //!
-//! The unknowns are the displacements u_n and p_n = v_{n−1} + (1−β₂)Δt a_{n−1}. The damping β_R K acts on p_n:
+//! The unknowns are the displacements u_n and p_n = v_{n−1} + (1−β₂)Δt a_{n−1}. The damping α_R M + β_R K of the pin acts on p_n:
 //!
 //! ```text
-//! M a_n   = r_n − K (u_n + β_R p_n) + contact forces
+//! M a_n   = r_n − K (u_n + β_R p_n) − α_R M p_n + contact forces
 //! u_{n+1} = u_n + Δt p_n + (½+β₂) Δt² a_n
 //! p_{n+1} = p_n + Δt a_n
 //! ```
@@ -17,7 +17,7 @@
 //! det = 1 − (β₂ − ½ + b) W²        trace = 2 − (½ + β₂ + b) W²
 //! ```
 //!
-//! The recursion is stable while 1 + trace + det ≥ 0, that is **W² (β₂ + b) ≤ 2**, a quadratic inequality in Δt.
+//! α_R adds α_R Δt to (β_R W²)/Δt, as any damper c/m does. The recursion is stable while 1 + trace + det ≥ 0, that is **W² (β₂ + b) ≤ 2**, a quadratic inequality in Δt.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -43,6 +43,8 @@ pub struct Scheme {
     pub beta2: f64,
     /// Stiffness-proportional damping `β_R` \[s\].
     pub beta_r_s: f64,
+    /// Mass-proportional damping `α_R` \[1/s\] of the pin.
+    pub alpha_r_per_s: f64,
     /// Time step Δt \[s\].
     pub time_step_s: f64,
 }
@@ -54,6 +56,8 @@ pub struct StepFactors<R: Number = f64> {
     pub time_step_s: f64,
     /// Stiffness-proportional damping `β_R` \[s\].
     pub beta_r_s: f64,
+    /// Mass-proportional damping `α_R` \[1/s\] of the pin.
+    pub alpha_r_per_s: f64,
     /// Δt \[s\] in the numbers of the fields.
     pub rounded_time_step_s: R,
     /// `β_R` \[s\] in the numbers of the fields.
@@ -84,6 +88,7 @@ impl Scheme {
         StepFactors {
             time_step_s: dt,
             beta_r_s: self.beta_r_s,
+            alpha_r_per_s: self.alpha_r_per_s,
             rounded_time_step_s: R::from_f64(dt),
             rounded_beta_r_s: R::from_f64(self.beta_r_s),
             u_scale: in_slots_of::<R>(&u_scale),

@@ -45,8 +45,13 @@ pub enum Decision {
     Open,
 }
 
-/// What the eigenvalues of a point say, with a damping β \[s\]. `coarser_decayed`: a run of the job on a coarser mesh decayed.
-pub fn verdict(point: &SlidingPoint, damping_s: f64, coarser_decayed: bool) -> Decision {
+/// What the eigenvalues of a point say, with a damping α \[1/s\] and β \[s\]. `coarser_decayed`: a run of the job on a coarser mesh
+/// decayed.
+pub fn verdict(
+    point: &SlidingPoint,
+    [mass_damping_per_s, damping_s]: [f64; 2],
+    coarser_decayed: bool,
+) -> Decision {
     let judged_hz = JUDGED * point.band_hz;
     let mut gain: f64 = 0.0;
     let mut verdict = Decision::Stable;
@@ -65,7 +70,8 @@ pub fn verdict(point: &SlidingPoint, damping_s: f64, coarser_decayed: bool) -> D
         }
         if value.im > 0.0 {
             let growth_per_s = value.re + if is_judged { error } else { 0.0 };
-            gain = gain.max(growth_per_s / value.im + damping_s * value.im / 2.0);
+            let undamped_per_s = growth_per_s + mass_damping_per_s / 2.0;
+            gain = gain.max(undamped_per_s / value.im + damping_s * value.im / 2.0);
         }
     }
     let is_damped = point.damped_above_hz.is_some_and(|limit_hz| limit_hz <= judged_hz);
@@ -116,7 +122,7 @@ mod tests {
         let of = |growth_per_s, in_steps_per_s| {
             verdict(
                 &point(&[(-500.0, -500.0, 0.0), (growth_per_s, in_steps_per_s, 300.0)], 5.0e4),
-                1.0e-6,
+                [0.0, 1.0e-6],
                 true,
             )
         };
@@ -126,14 +132,15 @@ mod tests {
         assert_eq!(of(310.0, 310.0), Decision::Unstable);
         assert_eq!(of(310.0, 290.0), Decision::Open);
         assert_eq!(of(f64::NAN, -310.0), Decision::Open);
-        assert_eq!(verdict(&point(&[], 5.0e4), 1.0e-6, true), Decision::Open);
+        assert_eq!(verdict(&point(&[], 5.0e4), [0.0, 1.0e-6], true), Decision::Open);
     }
 
     /// Protects: without enough damping, modes beyond the band of the basis may grow. A mode at 10⁵ rad/s that decays with
     /// 100 1/s has the gain β·10⁵/2 − 10⁻³, which a band of 20 kHz covers for β = 10⁻⁷ s and not for β = 0.
     #[test]
     fn modes_beyond_the_band_must_be_damped() {
-        let at = |damping_s, band_hz| verdict(&point(&[(-100.0, -100.0, 0.0)], band_hz), damping_s, true);
+        let at =
+            |damping_s, band_hz| verdict(&point(&[(-100.0, -100.0, 0.0)], band_hz), [0.0, damping_s], true);
         assert_eq!(at(1.0e-7, 2.0e4), Decision::Stable);
         assert_eq!(at(0.0, 2.0e4), Decision::Open);
         // The gain is 0.004, so 85 % of the band have to reach 2·0.004/10⁻⁷ rad/s = 12.7 kHz.
@@ -146,7 +153,7 @@ mod tests {
     #[test]
     fn what_is_beyond_the_band_must_be_known() {
         let mut point = point(&[(-100.0, -100.0, 0.0)], 5.0e4);
-        let of = |point: &SlidingPoint, coarser_decayed| verdict(point, 1.0e-7, coarser_decayed);
+        let of = |point: &SlidingPoint, coarser_decayed| verdict(point, [0.0, 1.0e-7], coarser_decayed);
         assert_eq!([of(&point, false), of(&point, true)], [Decision::Open, Decision::Stable]);
         for (damped_above_hz, expected) in [(4.3e4, Decision::Open), (4.2e4, Decision::Stable)] {
             point.damped_above_hz = Some(damped_above_hz);
@@ -166,7 +173,7 @@ mod tests {
             let mut point = point(&modes, band_hz);
             point.modes[0].eigenvalue_per_s.im = 0.5e5;
             point.has_all_modes = has_all_modes;
-            verdict(&point, 1.0e-6, true)
+            verdict(&point, [0.0, 1.0e-6], true)
         };
         assert_eq!(of(1.59e4 / 0.8, -290.0, false), Decision::Open);
         assert_eq!(of(1.59e4 / 0.9, -290.0, false), Decision::Stable);

@@ -144,7 +144,13 @@ impl Extension {
             }
         }
         let viscous = self.with_dashpots(basis, vibration, before, old);
-        Pencil { viscous, stiffness, sideways, damping_s: before.damping_s }
+        Pencil {
+            viscous,
+            stiffness,
+            sideways,
+            damping_s: before.damping_s,
+            mass_damping_per_s: before.mass_damping_per_s,
+        }
     }
 
     /// The matrices of other dampers in the larger basis, of which `old` vectors had been there before.

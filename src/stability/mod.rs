@@ -23,6 +23,7 @@ mod vibration;
 pub use error::StabilityError;
 pub use friction::SlidingFriction;
 
+use crate::solver::scheme::Scheme;
 use crate::solver::support::Support;
 use crate::solver::{Drive, Model};
 use basis::Basis;
@@ -194,6 +195,7 @@ impl ReducedStructure {
                 beta_r_s: scheme.beta_r_s,
             },
             damping_s: scheme.beta_r_s + (scheme.beta2 - 0.5) * scheme.time_step_s,
+            mass_damping_per_s: scheme.alpha_r_per_s,
         };
         let found = point.modes(&mut Elasticity::new(model, &self.space), modes, accuracy);
         let unit = &friction.equilibrium;
@@ -256,7 +258,7 @@ impl ReducedStructure {
     ) -> Result<(SlidingPoint, Decision), StabilityError> {
         let signs = Accuracy { aim: Aim::Signs, rounds: 3, ..Accuracy::default() };
         let point = self.point_with(model, drive, modes, signs)?;
-        let verdict = verdict(&point, damping_s(model), coarser_decayed);
+        let verdict = verdict(&point, [model.scheme().alpha_r_per_s, damping_s(model)], coarser_decayed);
         Ok((point, verdict))
     }
 
@@ -303,14 +305,16 @@ impl ReducedStructure {
     }
 }
 
-/// The dampers of holders. Their springs are in K, whose stiffness-proportional damping the springs do not have.
+/// The dampers of holders. Their springs are in K and their masses in M, whose damping they do not have.
 fn holder_dampers(model: &Model) -> Option<Dashpots> {
-    let beta_r_s = model.scheme().beta_r_s;
+    let Scheme { beta_r_s, alpha_r_per_s, .. } = *model.scheme();
     let all: Vec<Dashpot> = space::holders(model)
         .map(|held| {
             let share = 1.0 / held.tied.nodes.len() as f64;
             Dashpot {
-                coefficient_n_s_m: held.damping_n_s_m - beta_r_s * held.stiffness_n_m,
+                coefficient_n_s_m: held.damping_n_s_m
+                    - beta_r_s * held.stiffness_n_m
+                    - alpha_r_per_s * held.mass_kg,
                 direction: held.tied.dofs().map(|dof| (dof, share)).collect(),
             }
         })

@@ -1,7 +1,7 @@
 //! The quadratic eigenvalue problem in a basis that is normalized to the mass 1.
 //!
 //! ```text
-//! P(λ) = λ² + (1 + β λ) (K − μ AᵀB) + λ (D + Σ C)
+//! P(λ) = λ² + α λ + (1 + β λ) (K − μ AᵀB) + λ (D + Σ C)
 //! ```
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
@@ -19,6 +19,8 @@ pub struct Pencil {
     pub viscous: Vec<(Sampling, Mat<f64>)>,
     /// β \[s\].
     pub damping_s: f64,
+    /// α \[1/s\].
+    pub mass_damping_per_s: f64,
 }
 
 /// The velocity that a damper of a run takes.
@@ -79,6 +81,7 @@ impl Pencil {
             (false, false) => {
                 let (i, j) = (i - n, j - n);
                 let own = self.damping_s * self.stiffness[(i, j)] + self.sideways[(i, j)];
+                let own = if i == j { own + self.mass_damping_per_s } else { own };
                 -self.viscous.iter().fold(own, |sum, (_, matrix)| sum + matrix[(i, j)]) / scale
             }
         });
@@ -127,16 +130,17 @@ impl Pencil {
     /// The factors of P and those of its derivative.
     fn factors(&self, clock: Clock, value: c64) -> [Factors; 2] {
         let one = c64::new(1.0, 0.0);
+        let alpha = self.mass_damping_per_s;
         match clock {
             Clock::Continuous => [
                 Factors {
-                    inertia: value * value,
+                    inertia: value * value + value * alpha,
                     elastic: one + value * self.damping_s,
                     sideways: value,
                     viscous: [value; 3],
                 },
                 Factors {
-                    inertia: value * 2.0,
+                    inertia: value * 2.0 + one * alpha,
                     elastic: one * self.damping_s,
                     sideways: one,
                     viscous: [one; 3],
@@ -152,13 +156,14 @@ impl Pencil {
                 let square = time_step_s * time_step_s;
                 [
                     Factors {
-                        inertia: step * step / (g * square),
+                        inertia: step * step / (g * square) + step / g * (alpha / time_step_s),
                         elastic: one + step / g * (beta_r_s / time_step_s),
                         sideways: step / time_step_s,
                         viscous: [step / g, step / z, step].map(|factor| factor / time_step_s),
                     },
                     Factors {
-                        inertia: slope * (step * 2.0 * g - step * step * weight) / (g * g * square),
+                        inertia: slope * (step * 2.0 * g - step * step * weight) / (g * g * square)
+                            + slope / (g * g) * (alpha / time_step_s),
                         elastic: slope / (g * g) * (beta_r_s / time_step_s),
                         sideways: slope / time_step_s,
                         viscous: [slope / (g * g), slope / (z * z), slope].map(|factor| factor / time_step_s),

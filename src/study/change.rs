@@ -227,6 +227,18 @@ fn is_axis(parameter: &Parameter, value: &Value) -> bool {
 }
 
 /// Reads the text of a value: counts as `12x15x10`, then JSON, otherwise a string.
+impl Parameter {
+    /// A number of this parameter as a user writes it: with another unit of the same kind, or in that of the name.
+    ///
+    /// # Errors
+    /// What is wrong with the text.
+    pub fn number(&self, text: &str) -> Result<f64, String> {
+        let mut value = parse_value(self, text);
+        with_unit::in_setting(&mut value, self.unit)?;
+        value.as_f64().ok_or_else(|| format!("{text}: expected a number"))
+    }
+}
+
 fn parse_value(parameter: &Parameter, text: &str) -> Value {
     if matches!(parameter.kind, Kind::Counts) {
         let counts: Result<Vec<u64>, _> = text.split(['x', '×']).map(|n| n.trim().parse()).collect();

@@ -1,14 +1,14 @@
 //! Damping as people know it: a ratio at a frequency, or the β₂ of a scheme at its time step.
 
 use super::json::present;
-use crate::spec::{FieldError, JobSpec, Limit};
+use crate::spec::{FieldError, JobSpec, Limit, Numerics};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Damping at one frequency, by a damping ratio or by a loss factor, or the damping of the β₂ method at a time step. It gives
 /// `numerics.beta_r_s`: damping in proportion to the stiffness, C = `β_R` K, has ζ(f) = `β_R` π f, so at other frequencies it is
-/// in proportion to them. The β₂ method has the damping `β_R` = (β₂ − ½) Δt, which depends on the time step, and so on the mesh.
+/// in proportion to them. With a second frequency, C = `α_R` M + `β_R` K has ζ(f) = `α_R`/(4πf) + `β_R` π f, which is the same at both. The β₂ method has the damping `β_R` = (β₂ − ½) Δt, which depends on the time step, and so on the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Damping {
@@ -24,6 +24,11 @@ pub(super) struct Damping {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "f64")]
     pub frequency_hz: Option<f64>,
+    /// A second frequency (Hz) at which the ratio or the loss factor holds, too: the pin then has damping in proportion to its mass as well,
+    /// C = `α_R` M + `β_R` K. Between the two frequencies the damping is smaller, and beyond them larger. Rigid disks only.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(with = "f64")]
+    pub second_frequency_hz: Option<f64>,
     /// β₂ of a scheme whose damping the job has, ½ ≤ β₂ ≤ 1; with `at_time_step_s` instead of a ratio and a frequency.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "f64")]
@@ -40,10 +45,11 @@ pub(super) struct Damping {
 }
 
 /// The fields that give `β_R`.
-pub(super) const OF_PIN: [&str; 5] = [
+pub(super) const OF_PIN: [&str; 6] = [
     "damping.ratio",
     "damping.loss_factor",
     "damping.frequency_hz",
+    "damping.second_frequency_hz",
     "damping.beta2",
     "damping.at_time_step_s",
 ];
@@ -69,16 +75,30 @@ impl Damping {
     /// If a value is missing or out of its range, or if `gives` says that what it sets is given by name as well. Then nothing is set.
     pub(super) fn fill(self, spec: &mut JobSpec, gives: impl Fn(&str) -> bool) -> Result<(), FieldError> {
         let damps_pin = self != Self { holder_ratio: self.holder_ratio, ..Self::default() };
-        let beta_r_s = if damps_pin || self.holder_ratio.is_none() {
-            self.beta_r_s(spec.numerics.beta_r_s, gives("beta_r_s"))?
+        let Numerics { alpha_r_per_s, beta_r_s, .. } = spec.numerics;
+        if let Some(second_hz) = self.second_frequency_hz.filter(|_| gives("alpha_r_per_s")) {
+            let expected = "either this or numerics.alpha_r_per_s, not both: each gives α_R";
+            return Err(refused("damping.second_frequency_hz", second_hz, expected));
+        }
+        let (alpha_r_per_s, beta_r_s) = if damps_pin || self.holder_ratio.is_none() {
+            let beta_r_s = self.beta_r_s(beta_r_s, gives("beta_r_s"))?;
+            self.with_second(beta_r_s).map_or((alpha_r_per_s, beta_r_s), |[alpha, beta]| (alpha, beta))
         } else {
-            spec.numerics.beta_r_s
+            (alpha_r_per_s, beta_r_s)
         };
         if let Some(ratio) = self.holder_ratio {
             damp_holder(ratio, spec, gives)?;
         }
-        spec.numerics.beta_r_s = beta_r_s;
+        (spec.numerics.alpha_r_per_s, spec.numerics.beta_r_s) = (alpha_r_per_s, beta_r_s);
         Ok(())
+    }
+
+    /// `α_R` \[1/s\] and `β_R` \[s\] that have the same ratio at the second frequency, from the `β_R` \[s\] that has it at the first one
+    /// alone.
+    fn with_second(self, alone_s: f64) -> Option<[f64; 2]> {
+        let (first_hz, second_hz) = (self.frequency_hz?, self.second_frequency_hz?);
+        let beta_r_s = alone_s * first_hz / (first_hz + second_hz);
+        Some([beta_r_s * 4.0 * PI * PI * first_hz * second_hz, beta_r_s])
     }
 
     /// `β_R` \[s\]: ζ / (π f), or (β₂ − ½) Δt.
@@ -87,7 +107,14 @@ impl Damping {
             let expected = "either this or damping, not both: each gives β_R";
             return Err(refused("numerics.beta_r_s", given_s, expected));
         }
-        let values = [self.ratio, self.loss_factor, self.frequency_hz, self.beta2, self.at_time_step_s];
+        let values = [
+            self.ratio,
+            self.loss_factor,
+            self.frequency_hz,
+            self.second_frequency_hz,
+            self.beta2,
+            self.at_time_step_s,
+        ];
         let given: Vec<_> =
             OF_PIN.into_iter().zip(values).filter_map(|(field, value)| Some((field, value?))).collect();
         for &(field, value) in &given {
@@ -101,6 +128,14 @@ impl Damping {
                     .to_owned();
             return Err(FieldError { field: "damping".to_owned(), value: "{}".to_owned(), expected });
         };
+        if let Some(second_hz) = self.second_frequency_hz.filter(|own| Some(*own) == self.frequency_hz) {
+            let expected = "another frequency than damping.frequency_hz, or only one of the two";
+            return Err(refused("damping.second_frequency_hz", second_hz, expected));
+        }
+        if let Some(second_hz) = self.second_frequency_hz.filter(|_| self.frequency_hz.is_none()) {
+            let expected = "the first frequency too: damping.frequency_hz";
+            return Err(refused("damping.second_frequency_hz", second_hz, expected));
+        }
         let expected = match (
             self.ratio.or(self.loss_factor),
             self.frequency_hz,

@@ -148,9 +148,11 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("preset", "/preset", PRESET, "accuracy of mesh, time step and detection"),
     parameter("beta2", "/numerics/beta2", Kind::Number, "β₂ of the time scheme, 0.5 to 1").symbol("β₂"),
     parameter("beta_r_s", "/numerics/beta_r_s", Kind::Number, "stiffness-proportional damping β_R").symbol("β_R"),
+    parameter("alpha_r_per_s", "/numerics/alpha_r_per_s", Kind::Number, "mass-proportional damping α_R of the pin").symbol("α_R"),
     parameter("damping_ratio", "/damping/ratio", Kind::Number, "damping ratio ζ at damping_frequency_hz, instead of beta_r_s"),
     parameter("loss_factor", "/damping/loss_factor", Kind::Number, "loss factor η = 2ζ at damping_frequency_hz, instead of beta_r_s"),
     parameter("damping_frequency_hz", "/damping/frequency_hz", Kind::Number, "frequency at which damping_ratio or loss_factor holds"),
+    parameter("damping_second_frequency_hz", "/damping/second_frequency_hz", Kind::Number, "second frequency at which damping_ratio or loss_factor holds"),
     parameter("damping_beta2", "/damping/beta2", Kind::Number, "β₂ of a scheme that has the job's damping at damping_at_time_step_s, instead of beta_r_s"),
     parameter("holder_damping_ratio", "/damping/holder_ratio", Kind::Number, "damping ratio ζ of the holder's springs, instead of its dampers"),
     parameter("damping_at_time_step_s", "/damping/at_time_step_s", Kind::Number, "time step at which the scheme of damping_beta2 has the job's damping"),
@@ -232,9 +234,11 @@ impl Parameter {
         })
     }
 
-    /// Whether it changes how the physical case is solved and not the case: everything but the scene, and the mesh of it.
+    /// Whether it changes how the physical case is solved and not the case: everything but the scene, and the mesh of it. Damping in
+    /// proportion to the mass belongs to the case.
     pub fn is_numerics(&self) -> bool {
-        !self.pointer.starts_with("/scene/") || self.pointer.starts_with("/scene/pin/elements")
+        let is_scene = self.pointer.starts_with("/scene/") || self.name == "alpha_r_per_s";
+        !is_scene || self.pointer.starts_with("/scene/pin/elements")
     }
 
     /// The name of the column that holds it in data of jobs. It is the parameter's name, except that the numbers of elements
@@ -280,13 +284,22 @@ impl Parameter {
             "damping_ratio" => &["loss_factor", "damping_beta2", "damping_at_time_step_s", "beta_r_s"],
             "loss_factor" => &["damping_ratio", "damping_beta2", "damping_at_time_step_s", "beta_r_s"],
             "damping_frequency_hz" => &["damping_beta2", "damping_at_time_step_s", "beta_r_s"],
-            "damping_beta2" | "damping_at_time_step_s" => {
-                &["damping_ratio", "loss_factor", "damping_frequency_hz", "beta_r_s"]
+            "damping_second_frequency_hz" => {
+                &["damping_beta2", "damping_at_time_step_s", "beta_r_s", "alpha_r_per_s"]
             }
+            "alpha_r_per_s" => &["damping_second_frequency_hz"],
+            "damping_beta2" | "damping_at_time_step_s" => &[
+                "damping_ratio",
+                "loss_factor",
+                "damping_frequency_hz",
+                "damping_second_frequency_hz",
+                "beta_r_s",
+            ],
             "beta_r_s" => &[
                 "damping_ratio",
                 "loss_factor",
                 "damping_frequency_hz",
+                "damping_second_frequency_hz",
                 "damping_beta2",
                 "damping_at_time_step_s",
             ],

@@ -11,7 +11,7 @@ const ALIASES: &[(&[&str], &[&str])] = &[
     (&["rho", "ρ", "density"], &["density_kg_m3"]),
     (&["f", "f_n", "force", "load", "normal_force", "fn", "normal_load"], &["load_n", "force_n"]),
     (&["omega", "ω", "rpm", "speed", "speed_rpm", "n_rpm", "rotation_speed"], &["omega_rpm"]),
-    (&["v", "v_m_s", "speed_m_s", "velocity", "velocity_m_s", "sliding_speed", "sliding_velocity"], &["sliding_speed_m_s", "omega_rpm"]),
+    (&["v", "v_m_s", "speed_m_s", "velocity", "velocity_m_s", "sliding_speed", "sliding_speed_m_s", "sliding_velocity"], &["sliding_speed_m_s", "omega_rpm"]),
     (&["r", "r_m", "radius", "radius_m", "track_radius", "wear_track_radius"], &["track_radius_m"]),
     (&["d", "d_m", "diameter", "pin_diameter"], &["diameter_m"]),
     (&["μ", "friction", "friction_coefficient", "cof", "mu_k", "mu_kinetic", "mu_d"], &["mu"]),

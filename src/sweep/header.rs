@@ -11,6 +11,9 @@ const SYMBOLS: [(&str, &[&str]); 3] = [
     ("mu_star", &["μ*", "µ*", "mu*", "cof", "COF", "CoF", "friction", "friction_coefficient", "coefficient of friction"]),
 ];
 
+/// The field of a study for the speed of sliding, which is no column: only a scene knows the radius.
+const SPEED: &str = "sliding_speed_m_s";
+
 /// A name without the unit behind it: `n [rpm]`, `f / Hz`, `F in N`.
 fn without_unit(name: &str) -> &str {
     let name = name.split(['[', '(', '/']).next().unwrap_or(name);
@@ -35,7 +38,9 @@ fn meant_name<'a>(name: &str, known: &'a [String]) -> Option<&'a str> {
 pub(super) fn suggestion(name: &str, known: &[String]) -> Option<String> {
     let meant = meant_name(name, known)?;
     let unit = name_and_unit(meant).1;
-    let help = if without_unit(name) == name || unit.is_empty() {
+    let help = if meant == "omega_rpm" && misspelt_name(without_unit(name), [SPEED]) == Some(SPEED) {
+        "\n  help: ω [rpm] = 60 v / (2π R), with v in m/s and the radius R of the track in m".to_owned()
+    } else if without_unit(name) == name || unit.is_empty() {
         String::new()
     } else {
         format!("\n  help: the numbers of `{meant}` are in {unit}")
@@ -67,6 +72,13 @@ mod tests {
             let help = unit
                 .map_or_else(String::new, |unit| format!("\n  help: the numbers of `{name}` are in {unit}"));
             assert_eq!(suggestion(header, &known), Some(format!("did you mean `{name}`?{help}")), "{header}");
+        }
+        for speed in ["sliding_speed_m_s", "v [m/s]", "v (m/s)"] {
+            let words = suggestion(speed, &known).unwrap_or_default();
+            assert!(
+                words.starts_with("did you mean `omega_rpm`?\n  help: ω [rpm] = 60 v"),
+                "{speed}: {words}"
+            );
         }
         for own in ["N", "n", "Bemerkung", "temperature [°C]"] {
             assert_eq!(suggestion(own, &known), None, "{own}");

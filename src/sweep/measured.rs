@@ -1,6 +1,7 @@
 //! Files of measured points, for comparison with studies: CSV with a column for each parameter and result.
 
 use super::header::suggestion;
+use super::threshold::Threshold;
 use crate::report::columns::ExportColumn;
 use crate::report::{FREQUENCY, JobRow, MeasuredValue, Measurement, Parameters, RowState, SCALARS, Scalar};
 use crate::study::{PARAMETERS, Parameter, read_text};
@@ -62,6 +63,8 @@ enum Column {
     Parameter(&'static Parameter),
     Result(&'static Scalar),
     Error(&'static Scalar),
+    /// The error of a threshold along a parameter.
+    ParameterError(&'static Parameter),
     Squeals,
     Status,
     Ignored,
@@ -174,10 +177,10 @@ impl Place<'_> {
     }
 }
 
-/// The column with the error of a scalar: `mu_star_error`, `frequency_error_hz`.
-fn error_column(scalar: &Scalar) -> String {
-    let (stem, _) = name_and_unit(scalar.name);
-    format!("{stem}_error{}", &scalar.name[stem.len()..])
+/// The column with the error of another one: `mu_star_error`, `frequency_error_hz`.
+fn error_column(name: &str) -> String {
+    let (stem, _) = name_and_unit(name);
+    format!("{stem}_error{}", &name[stem.len()..])
 }
 
 /// The result whose error an export calls so: `mu_star_se`.
@@ -189,7 +192,7 @@ fn exported_error(name: &str) -> Option<&'static Scalar> {
 fn known_names() -> Vec<String> {
     let parameters = PARAMETERS.iter().map(|parameter| parameter.name.to_owned());
     let own = IGNORED.iter().chain(&[SQUEALS, STATUS]).map(|name| (*name).to_owned());
-    let results = SCALARS.iter().flat_map(|scalar| [scalar.name.to_owned(), error_column(scalar)]);
+    let results = SCALARS.iter().flat_map(|scalar| [scalar.name.to_owned(), error_column(scalar.name)]);
     parameters.chain(results).chain(own).collect()
 }
 
@@ -203,7 +206,8 @@ fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, Measured
                 place.error(Some(name), "the file has this column twice; expected it once".to_owned())
             );
         }
-        let of_error = || SCALARS.iter().find(|scalar| error_column(scalar) == name);
+        let of_error = || SCALARS.iter().find(|scalar| error_column(scalar.name) == name);
+        let of_threshold = || PARAMETERS.iter().find(|own| own.is_number() && error_column(own.name) == name);
         // A parameter that has the name of a result has another one in an export, too.
         let parameter = name.strip_prefix("parameter_").unwrap_or(name);
         columns.push(if IGNORED.contains(&name) {
@@ -220,6 +224,8 @@ fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, Measured
             Column::Parameter(parameter)
         } else if let Some(scalar) = of_error() {
             Column::Error(scalar)
+        } else if let Some(parameter) = of_threshold() {
+            Column::ParameterError(parameter)
         } else if let Some(meant) = suggestion(name, &known) {
             // Without it, a misspelt result would be missing in silence.
             let expected = "expected omega_rpm, mu or another parameter, a result such as mu_star or frequency_hz, its error \
@@ -239,18 +245,19 @@ fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, Measured
     Ok(columns)
 }
 
-/// A point; none if the line has no result.
+/// The point of a line, or the two around a threshold; none if the line has no result.
 fn row(
     header: &StringRecord,
     columns: &[Column],
     record: &StringRecord,
     place: &Place,
     source_name: &str,
-) -> Result<Option<JobRow>, MeasuredError> {
+) -> Result<Vec<JobRow>, MeasuredError> {
     let mut parameters: Vec<(String, Value)> = Vec::new();
     let mut values: Vec<MeasuredValue> = Vec::new();
     let mut errors: Vec<(&str, f64)> = Vec::new();
     let mut squeals = None;
+    let mut threshold = Threshold::default();
     for ((column, name), text) in columns.iter().zip(header).zip(record) {
         let number = || number(text, place).map_err(|message| place.error(Some(name), message));
         let require = |holds: bool, x: f64, expected: &str| {
@@ -269,13 +276,16 @@ fn row(
                 parameters.push((parameter.name.to_owned(), value));
             }
             _ if text.is_empty() => {}
-            Column::Squeals => {
-                squeals = Some(match text.to_ascii_lowercase().as_str() {
-                    "yes" | "true" | "1" => true,
-                    "no" | "false" | "0" => false,
-                    _ => return Err(place.error(Some(name), format!("{text}: expected yes or no"))),
-                });
-            }
+            Column::Squeals => match text.to_ascii_lowercase().as_str() {
+                "yes" | "true" | "1" => squeals = Some(true),
+                "no" | "false" | "0" => squeals = Some(false),
+                "below" => threshold.squeals_below = Some(true),
+                "above" => threshold.squeals_below = Some(false),
+                _ => {
+                    let message = format!("{text}: expected yes or no, or below or above for a threshold");
+                    return Err(place.error(Some(name), message));
+                }
+            },
             Column::Status => match text {
                 "periodic" | "unstable" => squeals = squeals.or(Some(true)),
                 "decayed" => squeals = squeals.or(Some(false)),
@@ -292,6 +302,9 @@ fn row(
                 }
                 values.push(MeasuredValue { name: scalar.name.to_owned(), value: number()?, error: None });
             }
+            Column::ParameterError(parameter) => {
+                threshold.errors.push((parameter.name, require(number()? > 0.0, number()?, "an error > 0")?));
+            }
             Column::Error(scalar) => {
                 let error = number()?;
                 if error < 0.0 {
@@ -306,8 +319,7 @@ fn row(
             value.error = Some(error);
         }
     }
-    let has_result = !values.is_empty() || squeals.is_some();
-    Ok(has_result.then(|| JobRow {
+    let point = |parameters, values, squeals| JobRow {
         study: source_name.to_owned(),
         job: format!("{}:{}", place.file, place.line),
         parameters: Parameters::new(f64::NAN, f64::NAN, parameters),
@@ -318,7 +330,13 @@ fn row(
         wave: 0,
         why: None,
         inputs: Vec::new(),
-    }))
+    };
+    let refused = |message| place.error(Some(SQUEALS), message);
+    if let Some(sides) = threshold.sides(&parameters, !values.is_empty()).map_err(refused)? {
+        return Ok(sides.map(|(parameters, squeals)| point(parameters, Vec::new(), Some(squeals))).into());
+    }
+    let has_result = !values.is_empty() || squeals.is_some();
+    Ok(has_result.then(|| point(parameters, values, squeals)).into_iter().collect())
 }
 
 fn number(text: &str, place: &Place) -> Result<f64, String> {

@@ -37,6 +37,7 @@ mod rows;
 mod selection;
 mod sheet;
 mod stability;
+mod threshold;
 mod transfer;
 mod trouble;
 mod work;

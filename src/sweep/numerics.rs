@@ -15,6 +15,7 @@ pub(super) fn numerics(spec: &JobSpec, cases: &mut SharedKeys) -> JobNumerics {
         nodes: scene.pin.node_count() as u64,
         beta2: numerics.beta2,
         beta_r_s: numerics.beta_r_s,
+        alpha_r_per_s: numerics.alpha_r_per_s,
         safety_factor: numerics.time_step_s.is_none().then_some(numerics.safety_factor),
         limit_s: run.limit_s,
         stop_early: run.stop_early,
@@ -32,7 +33,7 @@ pub(super) fn numerics(spec: &JobSpec, cases: &mut SharedKeys) -> JobNumerics {
 fn case_key(spec: &JobSpec, cases: &mut SharedKeys) -> String {
     let mut case = JobSpec {
         scene: spec.scene.clone(),
-        numerics: Numerics::default(),
+        numerics: Numerics { alpha_r_per_s: spec.numerics.alpha_r_per_s, ..Numerics::default() },
         run: RunControl::default(),
         detection: Detection::default(),
         stability: StabilityMethod::default(),

@@ -43,7 +43,7 @@ pub async fn write_refreshing_report(
 ) -> Result<Vec<PathBuf>, SweepError> {
     let request = ReportRequest::of_study(study);
     let view = request.view_of_study(queue, rows).await?;
-    Ok(write_viewed(queue, study, &request.studies, rows, &view, folder, refresh_s).await?.files)
+    Ok(write_viewed(queue, study, &request.studies, rows, &view, None, folder, refresh_s).await?.files)
 }
 
 /// Writes the page, tables and figures of a report's content into a folder, as [`write_refreshing_report`].
@@ -56,16 +56,19 @@ pub async fn write_content(
     folder: &Path,
     refresh_s: Option<u32>,
 ) -> Result<Written, SweepError> {
-    let ReportContent { title, studies, rows, view, .. } = content;
-    write_viewed(queue, title, studies, rows, view, folder, refresh_s).await
+    let ReportContent { title, studies, rows, view, variation, .. } = content;
+    let variation = variation.as_ref().map(|(name, rows)| (name.as_str(), rows.as_slice()));
+    write_viewed(queue, title, studies, rows, view, variation, folder, refresh_s).await
 }
 
+#[expect(clippy::too_many_arguments, reason = "the parts of a report")]
 async fn write_viewed(
     queue: &mut Queue,
     title: &str,
     studies: &[String],
     rows: &[JobRow],
     view: &View,
+    variation: Option<(&str, &[JobRow])>,
     folder: &Path,
     refresh_s: Option<u32>,
 ) -> Result<Written, SweepError> {
@@ -83,6 +86,7 @@ async fn write_viewed(
         stability: &stability,
         along: &along,
         findings,
+        variation,
         refresh_s,
         ..surroundings.report()
     };

@@ -154,6 +154,7 @@ pub fn numerics(n: usize, safety_factor: f64) -> JobNumerics {
         nodes: (n as u64 + 1).pow(3),
         beta2: 0.5,
         beta_r_s: 5.0e-8,
+        alpha_r_per_s: 0.0,
         safety_factor: Some(safety_factor),
         limit_s: 0.01,
         stop_early: false,

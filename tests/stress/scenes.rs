@@ -30,6 +30,7 @@ pub fn pin(elements: [usize; 3]) -> ModelDefinition {
         target: TargetDefinition::Rigid(target::rotating_disk(&mesh, 0.0914)),
         beta2: 0.5,
         beta_r_s: 0.0,
+        alpha_r_per_s: 0.0,
         time_step: TimeStep::FractionOfLimit(0.7),
         mesh,
     }

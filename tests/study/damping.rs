@@ -25,6 +25,51 @@ fn the_ratio_holds_at_its_frequency() {
     }
 }
 
+/// Damping C = α_R M + β_R K has ζ(ω) = α_R/(2ω) + β_R ω/2 (Rayleigh): the same at both frequencies, less between them and more beyond. The
+/// tolerance is a few roundings.
+#[test]
+fn the_ratio_holds_at_two_frequencies() {
+    for (first_hz, second_hz, ratio) in [(5_000.0, 15_000.0, 0.02), (20_000.0, 800.0, 0.1)] {
+        let text =
+            format!(r#""ratio": {ratio}, "frequency_hz": {first_hz}, "second_frequency_hz": {second_hz}"#);
+        let study = damped(&text);
+        let numerics = &study.base().numerics;
+        let at = |hz: f64| {
+            let omega = 2.0 * PI * hz;
+            numerics.alpha_r_per_s / (2.0 * omega) + numerics.beta_r_s * omega / 2.0
+        };
+        for hz in [first_hz, second_hz] {
+            assert!((at(hz) / ratio - 1.0).abs() < 1.0e-14, "{} at {hz} Hz", at(hz));
+        }
+        assert!(at((first_hz * second_hz).sqrt()) < ratio && at(2.0 * first_hz.max(second_hz)) > ratio);
+    }
+    let varied = parse(
+        r#"{ "damping": { "ratio": 0.02, "frequency_hz": 5e3 }, "grid": { "damping_second_frequency_hz": [1e4, 2e4] } }"#,
+    );
+    assert!(varied.expand("1").unwrap().iter().all(|job| job.spec.numerics.alpha_r_per_s > 0.0));
+    for (text, expected) in [
+        (
+            r#"{ "damping": { "ratio": 0.1, "frequency_hz": 5e3, "second_frequency_hz": 5e3 } }"#,
+            "another frequency than damping.frequency_hz",
+        ),
+        (
+            r#"{ "damping": { "ratio": 0.1, "second_frequency_hz": 5e3 } }"#,
+            "the first frequency too: damping.frequency_hz",
+        ),
+        (
+            r#"{ "damping": { "ratio": 0.1, "frequency_hz": 5e3, "second_frequency_hz": 9e3 }, "numerics": { "alpha_r_per_s": 3 } }"#,
+            "each gives α_R",
+        ),
+        (r#"{ "numerics": { "alpha_r_per_s": -3 } }"#, "a damping rate >= 0 1/s"),
+        (
+            r#"{ "scene": { "disk": { "kind": "elastic" } }, "numerics": { "alpha_r_per_s": 3 } }"#,
+            "0 with an elastic disk",
+        ),
+    ] {
+        assert_contains(&refusal(text), &[expected]);
+    }
+}
+
 /// The damping of the β₂ method is β_R = (β₂ − ½) Δt, and the job has only β_R. The tolerance is a rounding.
 #[test]
 fn a_scheme_has_its_damping_at_its_time_step() {

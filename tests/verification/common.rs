@@ -54,6 +54,7 @@ pub fn definition(mesh: impl Into<PinMesh>, material: Material, supports: Vec<Su
         load: Vec::<LoadShare>::new(),
         beta2: 0.5,
         beta_r_s: 0.0,
+        alpha_r_per_s: 0.0,
         time_step: TimeStep::FractionOfLimit(1.0),
     }
 }

@@ -59,19 +59,23 @@ fn closes_to_rounding_when_every_step_is_audited() {
     );
     let mut most_steps: f64 = 0.0;
     for beta2 in [0.5, 0.6, 1.0] {
-        for beta_r_s in [0.0, 5.0e-8] {
+        for (beta_r_s, alpha_r_per_s) in [(0.0, 0.0), (5.0e-8, 0.0), (0.0, 3.0e3), (5.0e-8, 3.0e3)] {
             for top in [TopFace::TiedInZ, TopFace::FreeInZ] {
                 let mut spec = spec();
                 spec.numerics.beta2 = beta2;
                 spec.numerics.beta_r_s = beta_r_s;
+                spec.numerics.alpha_r_per_s = alpha_r_per_s;
                 spec.scene.top = top;
                 let (ledger, steps) = run(&spec, 1);
                 let energies = ledger.energies(0);
                 most_steps = most_steps.max(steps as f64);
-                let name = format!("β₂ = {beta2}, β_R = {beta_r_s} s, {top:?}");
+                let alpha =
+                    if alpha_r_per_s > 0.0 { format!("α_R = {alpha_r_per_s} 1/s, ") } else { String::new() };
+                let name = format!("β₂ = {beta2}, {alpha}β_R = {beta_r_s} s, {top:?}");
                 evidence.found(name, energies.imbalance_j() / energies.input_j(), 0.0, 1.0);
                 assert!(energies.friction_j > 0.0 && energies.contact_loss_j > 0.0, "{energies:?}");
-                assert_eq!(energies.damping_j > 0.0, beta2 > 0.5 || beta_r_s > 0.0, "{energies:?}");
+                let is_damped = beta2 > 0.5 || beta_r_s > 0.0 || alpha_r_per_s > 0.0;
+                assert_eq!(energies.damping_j > 0.0, is_damped, "{energies:?}");
             }
         }
     }
@@ -84,10 +88,11 @@ fn closes_to_rounding_when_every_step_is_audited() {
 #[test]
 fn closes_to_rounding_in_single_precision() {
     for beta2 in [0.5, 0.6] {
-        for beta_r_s in [0.0, 5.0e-8] {
+        for (beta_r_s, alpha_r_per_s) in [(0.0, 0.0), (5.0e-8, 0.0), (5.0e-8, 3.0e3)] {
             let mut spec = spec();
             spec.numerics.beta2 = beta2;
             spec.numerics.beta_r_s = beta_r_s;
+            spec.numerics.alpha_r_per_s = alpha_r_per_s;
             let (ledger, steps) = run_in::<f32>(&spec, 1);
             let residual = ledger.energies(0).relative_residual();
             let bound = (ROUNDINGS_PER_FORCE * steps as f64).sqrt() * f64::from(f32::EPSILON);
@@ -164,6 +169,7 @@ fn beyond_the_limit(fraction: f64) -> Model {
         target: TargetDefinition::Rigid(target::rotating_disk(&mesh, 0.0914)),
         beta2: 0.5,
         beta_r_s: 5.0e-8,
+        alpha_r_per_s: 0.0,
         time_step: TimeStep::FractionOfLimit(1.0),
         mesh,
     };

@@ -277,6 +277,7 @@ fn a_pin_rocks_below_its_holder() {
         target: TargetDefinition::Rigid(target::straight_plane(mesh)),
         beta2: 0.5,
         beta_r_s: 0.0,
+        alpha_r_per_s: 0.0,
         time_step: TimeStep::FractionOfLimit(0.5),
     };
     let model = Model::new(definition).unwrap().with_initial_gaps(|_| 1.0e-3);

@@ -1,8 +1,8 @@
 //! B3 The β₂ integrator on single modes of a real mesh.
 //!
-//! Problem: one oscillator of frequency ω. With W = ωΔt and b = β_R/Δt, successive displacements obey q_{n+1}
-//! = trace·q_n − det·q_{n−1}, det = 1 − (β₂ − ½ + b)W², trace = 2 − (½ + β₂ + b)W² = 2√det cos θ. The
-//! stability limit is W²(β₂ + b) = 2, i.e. W = √(2/β₂) without damping. Source: the amplification matrix of
+//! Problem: one oscillator of frequency ω. With W = ωΔt and d = (β_R ω² + α_R)Δt, successive displacements obey q_{n+1}
+//! = trace·q_n − det·q_{n−1}, det = 1 − (β₂ − ½)W² − d, trace = 2 − (½ + β₂)W² − d = 2√det cos θ. The
+//! stability limit is β₂W² + d = 2, i.e. W = √(2/β₂) without damping. Source: the amplification matrix of
 //! Newmark's method with β = 0, γ = β₂ (N. M. Newmark 1959; T. J. R. Hughes, *The finite element method*,
 //! 1987, ch. 9). The answer is exact.
 //!
@@ -38,7 +38,7 @@ fn omega(model: &Model, mode: usize) -> f64 {
 fn rounding(model: &Model, n: usize) -> f64 {
     let dt = model.time_step_s();
     let w2 = (omega(model, LAYERS) * dt).powi(2);
-    let size = 1.5 * w2 * (1.0 + model.scheme().beta_r_s / dt) * 3.0;
+    let size = 1.5 * (w2 * (1.0 + model.scheme().beta_r_s / dt) * 3.0 + model.scheme().alpha_r_per_s * dt);
     ROUNDINGS_PER_FORCE * size * f64::EPSILON * (n * n) as f64 / 2.0
 }
 
@@ -50,22 +50,27 @@ fn modes_follow_the_amplification_matrix() {
         let case = |what: &str| Evidence::new("B3", format!("β₂ = {beta2}, {what}"), SOURCE);
         let (mut dets, mut traces, mut first) =
             (case("det"), case("trace = 2√det cos θ"), case("half-force first step"));
-        for beta_r_s in [0.0, 5.0e-8, 1.0e-6] {
+        for (beta_r_s, alpha_r_per_s) in
+            [(0.0, 0.0), (5.0e-8, 0.0), (1.0e-6, 0.0), (0.0, 2.0e5), (5.0e-8, 2.0e5)]
+        {
             let time_step = TimeStep::FractionOfLimit(0.8);
-            let model = Model::new(ModelDefinition { beta2, beta_r_s, time_step, ..bar(LAYERS) }).unwrap();
+            let definition = ModelDefinition { beta2, beta_r_s, alpha_r_per_s, time_step, ..bar(LAYERS) };
+            let model = Model::new(definition).unwrap();
             let dt = model.time_step_s();
             for mode in [1, 5, 12] {
                 let w2 = (omega(&model, mode) * dt).powi(2);
-                let b = beta_r_s / dt;
-                let determinant = 1.0 - (beta2 - 0.5 + b) * w2;
-                let trace = 2.0 - (0.5 + beta2 + b) * w2;
+                let damping = beta_r_s / dt * w2 + alpha_r_per_s * dt;
+                let determinant = 1.0 - (beta2 - 0.5) * w2 - damping;
+                let trace = 2.0 - (0.5 + beta2) * w2 - damping;
                 let mut state = in_mode(&model, mode);
                 let mut q = vec![state.u[2] - 2.0];
                 for _ in 0..steps {
                     advance(&model, &IDLE, &mut state, 1);
                     q.push(state.u[2] - 2.0);
                 }
-                let name = format!("β_R = {beta_r_s} s, mode {mode}, W = {:.3}", w2.sqrt());
+                let alpha =
+                    if alpha_r_per_s > 0.0 { format!("α_R = {alpha_r_per_s} 1/s, ") } else { String::new() };
+                let name = format!("{alpha}β_R = {beta_r_s} s, mode {mode}, W = {:.3}", w2.sqrt());
                 // From rest, the first step with half the force gives q_1 = (1 − W²/2) q_0.
                 first.bounded(&name, q[1], 1.0 - w2 / 2.0, 1.0, rounding(&model, 1));
                 // From q_1 on all steps are alike. Three successive values give a Casoratian.

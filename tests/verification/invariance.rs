@@ -79,6 +79,7 @@ fn straight(size_m: [f64; 3], elements: [usize; 3], side: ClampSide, direction: 
         target: TargetDefinition::Rigid(vec![direction; mesh.bottom_nodes().len()]),
         beta2: 0.5,
         beta_r_s: 5.0e-8,
+        alpha_r_per_s: 0.0,
         // This is 0.7 of the limit, the same to the last bit in every direction.
         time_step: TimeStep::Given(1.7e-6),
         mesh,

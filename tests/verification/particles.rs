@@ -93,6 +93,7 @@ impl Particles {
             load: self.load.clone(),
             beta2: 0.5,
             beta_r_s,
+            alpha_r_per_s: 0.0,
             time_step,
         }
     }

@@ -38,6 +38,7 @@ fn rig(pin: [usize; 3], disk: [usize; 3], tilt_deg: f64) -> Model {
         }),
         beta2: 0.5,
         beta_r_s: 0.0,
+        alpha_r_per_s: 0.0,
         time_step: TimeStep::FractionOfLimit(0.5),
     };
     // The far end is pushed 0.1 mm towards the disk.

@@ -39,7 +39,10 @@ fn rigid_scenes_have_the_modes_of_the_reduced_problem() {
     crowned.scene.pin.base.crown_radius_m = Some(8.0);
     crowned.scene.contact.law = FrictionLaw::Exponential;
     (crowned.scene.contact.mu_static, crowned.scene.contact.speed_m_s) = (Some(0.45), Some(0.05));
-    for spec in [scene([4, 5, 4], 0.003, 0.4, 7.0), holder, crowned] {
+    // The masses of holders have none of the pin's damping.
+    let mut damped = holder.clone();
+    damped.numerics.alpha_r_per_s = 2.0e4;
+    for spec in [scene([4, 5, 4], 0.003, 0.4, 7.0), holder, crowned, damped] {
         let (model, drive) = (model(&spec), analysis::drive(&spec));
         let reduced = Structure::new(&model).unwrap().point_with(&model, &drive, 4, EXACT).unwrap();
         let sparse = SparseStructure::new(&model).unwrap();
@@ -66,6 +69,38 @@ fn rigid_scenes_have_the_modes_of_the_reduced_problem() {
         }
         assert!(compared >= 2, "only {compared} modes were compared");
     }
+}
+
+/// Protects: damping α M + β K takes an undamped mode with ω² to λ² + (α + βω²) λ + ω² = 0 (Rayleigh), by both ways to compute modes. Without
+/// friction and contact damping the modes are those of a symmetric problem.
+#[test]
+fn damping_moves_modes_as_rayleigh_says() {
+    let (alpha, beta) = (4.0e3, 1.0e-7);
+    let mut spec = scene([4, 5, 4], 0.003, 0.0, 7.0);
+    spec.numerics.beta2 = 0.5;
+    let modes = |alpha: f64, beta: f64| {
+        let mut spec = spec.clone();
+        (spec.numerics.alpha_r_per_s, spec.numerics.beta_r_s) = (alpha, beta);
+        let (model, drive) = (model(&spec), analysis::drive(&spec));
+        let reduced = Structure::new(&model).unwrap().point_with(&model, &drive, 40, EXACT).unwrap();
+        let sparse = SparseStructure::new(&model).unwrap().point(&model, &drive, 6).unwrap();
+        [reduced.modes, sparse.modes]
+    };
+    let [undamped, _] = modes(0.0, 0.0);
+    let mut compared = 0;
+    for damped in modes(alpha, beta).iter().flatten().filter(|mode| mode.is_converged) {
+        let value = damped.eigenvalue_per_s;
+        let squares = undamped.iter().map(|mode| mode.eigenvalue_per_s.im.powi(2));
+        let exact = squares.map(|square| {
+            let damping = alpha + beta * square;
+            nalgebra::Complex::new(-0.5 * damping, (square - 0.25 * damping * damping).sqrt())
+        });
+        let error = exact.map(|exact| (exact - value).norm() / value.norm()).fold(f64::INFINITY, f64::min);
+        println!("{value} differs by {error:e}");
+        assert!(error < 1.0e-9, "{value}: {error:e}");
+        compared += 1;
+    }
+    assert!(compared >= 6, "only {compared} modes were compared");
 }
 
 /// Protects: an elastic disk that gets stiffer tends to a rigid one, as 1/E.
@@ -156,6 +191,7 @@ fn a_mode_of_the_disk_is_left_alone() {
         }),
         beta2: 0.5,
         beta_r_s: 0.0,
+        alpha_r_per_s: 0.0,
         time_step: TimeStep::FractionOfLimit(0.5),
     };
     // Only the middle of the base touches, under which the nodal line is, and the held pin presses it down.

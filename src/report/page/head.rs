@@ -107,11 +107,18 @@ fn damping(rows: &[&JobRow]) -> Option<String> {
         let numerics = row.numerics.as_ref()?;
         // The damping of β₂ depends on the time step, which is another one on each mesh.
         let of_scheme_s = (numerics.beta2 - 0.5) * row.record()?.time_step_s;
-        Some((numerics.beta_r_s, of_scheme_s))
+        Some((numerics.beta_r_s, of_scheme_s, numerics.alpha_r_per_s))
     };
     let mut all = rows.iter().filter(oscillates).map(own);
     let first = all.next()??;
-    let (beta_r_s, of_scheme_s) = Some(first).filter(|_| all.all(|other| other == Some(first)))?;
+    let (beta_r_s, of_scheme_s, alpha) = Some(first).filter(|_| all.all(|other| other == Some(first)))?;
+    if alpha > 0.0 {
+        let alpha = value::significant(alpha, 4);
+        return Some(format!(
+            "Damping: α_R = {alpha} 1/s in proportion to the mass, and β_R = {} in proportion to the stiffness.",
+            value::quantity(beta_r_s + of_scheme_s, "s")
+        ));
+    }
     let seconds = |x: f64| value::quantity(x, "s");
     Some(match (beta_r_s, of_scheme_s) {
         (0.0, 0.0) => "The pin has no damping.".to_owned(),

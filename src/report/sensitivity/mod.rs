@@ -2,11 +2,13 @@
 
 mod design;
 mod indices;
+mod movers;
 mod parameter;
 mod tables;
 mod types;
 
 pub use design::Design;
+pub(super) use movers::{Mover, movers};
 pub(super) use tables::{MainIndex, described};
 pub use tables::{indices_table, markdown, page};
 pub use types::{Index, Indices, REGIME, Sensitivity};

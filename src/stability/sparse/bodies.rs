@@ -37,6 +37,8 @@ pub struct Bodies {
     pub rows: Vec<Vec<(usize, f64)>>,
     /// Mass \[kg\] of every displacement.
     pub masses_kg: Vec<f64>,
+    /// Mass-proportional damping \[1/s\] of the pin. There is none with an elastic disk.
+    pub alpha_r_per_s: f64,
     /// How every displacement may move.
     pub freedoms: Vec<Freedom>,
     /// Number of displacements of the pin.
@@ -99,7 +101,16 @@ impl Bodies {
                 surface: model.ring().map_or_else(Default::default, |ring| surface(ring, first, [y, -x])),
             }
         });
-        Self { holders, carried, meetings: meetings.collect(), pin: first, rows, masses_kg, freedoms }
+        Self {
+            holders,
+            carried,
+            meetings: meetings.collect(),
+            pin: first,
+            rows,
+            masses_kg,
+            alpha_r_per_s: model.scheme().alpha_r_per_s,
+            freedoms,
+        }
     }
 }
 

@@ -90,7 +90,11 @@ impl System {
             for (column, value) in columns {
                 add(&left[row], &right[*column], [0.0, *value, 0.0]);
             }
-            add(&left[row], &right[row], [bodies.masses_kg[row], 0.0, 0.0]);
+            add(
+                &left[row],
+                &right[row],
+                [bodies.masses_kg[row], 0.0, bodies.alpha_r_per_s * bodies.masses_kg[row]],
+            );
         }
         for (form, [mass, stiffness, _]) in &bodies.holders {
             let form = moved(&right, form, 1.0);

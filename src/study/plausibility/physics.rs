@@ -220,7 +220,8 @@ fn clamp(spec: &JobSpec) -> Option<Doubt> {
     let axis = clamp.side.axis_across().filter(|_| pin.shape != Shape::Mesh)?;
     let is_collet = clamp.side == ClampSide::Collet;
     let strips = if matches!(clamp.side, ClampSide::BothSides | ClampSide::BothEnds) { 2.0 } else { 1.0 };
-    let (width_m, whole_m) = if pin.shape == Shape::Block {
+    // The rows of a cylinder are at equal distances along its height only.
+    let (width_m, whole_m) = if pin.shape == Shape::Block || is_collet {
         let edge_m = pin.element_edges_m()[axis];
         let rows = (clamp.width_m / edge_m).round();
         // A collet leaves the contact face free.

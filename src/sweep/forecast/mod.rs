@@ -211,7 +211,8 @@ fn groups(plan: &Plan, threads: usize) -> Vec<Group> {
         {
             group.modes_bytes = workload.modes_bytes();
         }
-        *observation_s = observation_s.max(job.spec.observation_s());
+        // Nothing is observed after the end of the run.
+        *observation_s = observation_s.max(job.spec.observation_s().min(job.spec.run.limit_s));
     }
     let finished = |(mut group, observation_s): (Group, f64)| {
         group.together = group.workload.widest().min(group.jobs.div_ceil(threads));

@@ -4,7 +4,7 @@
 //! the logarithm of the frequency, whose errors are shares.
 
 use crate::analysis::{JobRecord, MeshError, Outcome, Regime};
-use crate::calibration::{self, Candidate, Computed, History, LOG_FREQUENCY, Measured, Region, Run, Target};
+use crate::calibration::{self, Assessment, Computed, History, LOG_FREQUENCY, Measured, Region, Run, Target};
 use crate::publish::value::significant_number;
 use crate::report::{Calibration, Check, Datum, FREQUENCY, Fit, Free, JobRow, MU_STAR, Nearest};
 use crate::study::{Calibrate, FreeParameter, MeasuredPoint, Spacing, Study, sobol_points};
@@ -84,7 +84,7 @@ pub(super) fn implausibility(
     settings: &Calibrate,
     rows: &[JobRow],
     point: &[(String, f64)],
-) -> Option<[f64; 2]> {
+) -> Option<(Nearest, f64)> {
     let known = Known::of(study, settings, rows);
     // The order of the parameters is that of the stored study.
     let share = |own: &FreeParameter| {
@@ -92,8 +92,7 @@ pub(super) fn implausibility(
         value.map(|value| own.share(value))
     };
     let place = known.free.iter().map(share).collect::<Option<Vec<f64>>>()?;
-    let all = known.history.at(&place).into_iter().map(|own| own.implausibility);
-    Some([all.fold(0.0, f64::max), known.history.cutoff()])
+    Some((known.most_implausible(&place, &known.history.at(&place)), known.history.cutoff()))
 }
 
 /// The rows of each point of the free parameters, by their values.
@@ -230,7 +229,11 @@ impl<'a> Known<'a> {
         let of_quantity = [MU_STAR.name, FREQUENCY.name];
         let checks = history.checks().into_iter().zip(of_quantity);
         let pairs = (0..self.free.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
-        let nearest = region.best.as_ref().filter(|_| region.inside.is_empty()).map(|own| self.nearest(own));
+        let nearest = region
+            .best
+            .as_ref()
+            .filter(|_| region.inside.is_empty())
+            .map(|own| self.most_implausible(&own.place, &own.at));
         let step = region.inside.len().div_ceil(SHOWN).max(1);
         Calibration {
             free: free.collect(),
@@ -248,6 +251,7 @@ impl<'a> Known<'a> {
                 .collect(),
             is_known: history.is_known(region),
             unknown_mesh: self.unknown_mesh(),
+            without_values: self.without_values(),
         }
     }
 
@@ -261,6 +265,7 @@ impl<'a> Known<'a> {
             root_mean_square: (own.square_sum / own.compared.max(1) as f64).sqrt(),
             compared: own.compared,
             other_state: own.other_state,
+            is_ruled_out: own.other_state > 0 || own.largest > self.history.cutoff(),
         };
         Some((run, fit))
     }
@@ -306,10 +311,10 @@ impl<'a> Known<'a> {
         found
     }
 
-    /// What rules out a place: the measured value with the largest implausibility, or whether it squeals.
-    fn nearest(&self, own: &Candidate) -> Nearest {
+    /// What speaks most against a place: the measured value with the largest implausibility, or whether it squeals.
+    fn most_implausible(&self, place: &[f64], at: &[Assessment]) -> Nearest {
         let mut worst: Option<(f64, usize, &'static str)> = None;
-        for (number, (at, target)) in own.at.iter().zip(self.history.targets()).enumerate() {
+        for (number, (at, target)) in at.iter().zip(self.history.targets()).enumerate() {
             let of_values =
                 [MU_STAR.name, FREQUENCY.name].into_iter().enumerate().filter_map(|(quantity, of)| {
                     Some((at.values[quantity]?.implausibility(&target.values[quantity]?), of))
@@ -321,10 +326,10 @@ impl<'a> Known<'a> {
                 }
             }
         }
-        let (_, number, of) = worst.unwrap_or((0.0, 0, SQUEALS));
+        let (implausibility, number, of) = worst.unwrap_or((0.0, 0, SQUEALS));
         Nearest {
-            values: self.values(&own.place),
-            implausibility: own.implausibility,
+            values: self.values(place),
+            implausibility,
             of,
             place: place_of(&self.settings.data[number]),
         }
@@ -332,6 +337,16 @@ impl<'a> Known<'a> {
 
     /// Values of runs that squeal whose error of the mesh is not known, of those that are compared with measured ones.
     fn unknown_mesh(&self) -> [usize; 2] {
+        self.count_of_squealing(|own| Some(own?.mesh_deviation.is_none()))
+    }
+
+    /// Measured values that runs which squeal do not have, and all that they could have.
+    fn without_values(&self) -> [usize; 2] {
+        self.count_of_squealing(|own| Some(own.is_none()))
+    }
+
+    /// The measured values of runs that squeal for which `is_counted` is true, and those for which it is not `None`.
+    fn count_of_squealing(&self, is_counted: fn(Option<&Computed>) -> Option<bool>) -> [usize; 2] {
         let mut found = [0; 2];
         for run in self.history.runs() {
             for (outcome, target) in run.outcomes.iter().zip(self.history.targets()) {
@@ -339,8 +354,8 @@ impl<'a> Known<'a> {
                     continue;
                 };
                 for (own, _) in outcome.values.iter().zip(&target.values).filter(|(_, own)| own.is_some()) {
-                    let Some(own) = own else { continue };
-                    found[0] += usize::from(own.mesh_deviation.is_none());
+                    let Some(is_counted) = is_counted(own.as_ref()) else { continue };
+                    found[0] += usize::from(is_counted);
                     found[1] += 1;
                 }
             }

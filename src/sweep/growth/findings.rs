@@ -2,7 +2,7 @@
 
 use super::{calibrate, refine};
 use crate::queue::{PlanState, PlanStatus, Queue};
-use crate::report::{BranchPoint, Endpoint, Findings, JobRow, RowState, basins};
+use crate::report::{BranchPoint, Endpoint, Findings, JobRow, Nearest, RowState, basins};
 use crate::study::{Continue, DIRECTION, Direction, KICK, Study};
 use crate::sweep::database::readable_study;
 use crate::sweep::error::SweepError;
@@ -47,7 +47,7 @@ pub async fn read_implausibility(
     study: &str,
     rows: &[JobRow],
     point: &[(String, f64)],
-) -> Result<Option<[f64; 2]>, SweepError> {
+) -> Result<Option<(Nearest, f64)>, SweepError> {
     let Some(study) = readable_study(queue, study).await? else { return Ok(None) };
     let settings = study.growth().calibrate.as_ref();
     Ok(settings.and_then(|own| calibrate::implausibility(&study, own, rows, point)))

@@ -90,17 +90,22 @@ impl<const L: usize, R: Number> PinAudit<L, R> {
 
     /// Evaluates the stored energy and pKp before the step.
     pub fn begin(&mut self, pin: &PinBody, scheme: &Scheme, before: &Motion<'_, L, R>) {
-        let (operator, dt, beta_r) = (pin.operator(), scheme.time_step_s, scheme.beta_r_s);
+        let (operator, dt) = (pin.operator(), scheme.time_step_s);
+        let scale = scale_of_damping(scheme);
         // K p overwrites K u below.
         self.elastic_j = operator.stored_j(before.u, before.history, &mut self.kp, &mut self.scratch);
-        if beta_r == 0.0 {
+        if scale == 0.0 {
             return;
         }
-        let form = operator.tangent(before.p, &mut self.kp, &mut self.scratch);
-        self.damping_before_j = form.map(|form| beta_r * dt * form);
+        let mut form = operator.tangent(before.p, &mut self.kp, &mut self.scratch);
+        if scheme.alpha_r_per_s > 0.0 {
+            self.add_mass_damping(scheme, before.p);
+            form = before.p.dot(&self.kp);
+        }
+        self.damping_before_j = form.map(|form| scale * dt * form);
         if let Some(jumps) = &self.jumps {
             // Δu of the step before is Δt p + (γ−½) Δt² a.
-            let factor = beta_r * (scheme.beta2 - 0.5) * dt * dt;
+            let factor = scale * (scheme.beta2 - 0.5) * dt * dt;
             let form = jumps.previous_acceleration.dot(&self.kp);
             for lane in 0..L {
                 self.damping_before_j[lane] += factor * form[lane];
@@ -171,6 +176,20 @@ impl<const L: usize, R: Number> PinAudit<L, R> {
         add_lanes(&mut total.numerical_j, &numerical_j);
     }
 
+    /// Makes the damping forces β_R K p + α_R M p of K p.
+    fn add_mass_damping(&mut self, scheme: &Scheme, p: &FieldOf<L, R>) {
+        let [alpha, beta] = [scheme.alpha_r_per_s, scheme.beta_r_s].map(R::from_f64);
+        let blocks = p.blocks_per_line();
+        for (at, (force, p)) in self.kp.blocks_mut().iter_mut().zip(p.blocks()).enumerate() {
+            let mass = self.mass.row(at / blocks, at % blocks);
+            for c in 0..3 {
+                for i in 0..R::WIDTH {
+                    force.0[c][i] = beta * force.0[c][i] + alpha * mass[i] * p.0[c][i];
+                }
+            }
+        }
+    }
+
     /// (γ−½)\[ΔuKΔu − ½γΔt² ΔaMΔa\] \[J\] of the step before `t_n`. It overwrites K p, which is no longer needed.
     fn numerical_loss(&mut self, pin: &PinBody, scheme: &Scheme, inertial_jump_j: &[f64; L]) -> [f64; L] {
         let Some(jumps) = &mut self.jumps else { return [0.0; L] };
@@ -233,12 +252,13 @@ impl<R: Number> AuditedMotion<'_, R> {
 
     #[inline(always)]
     fn add_up_in<S: Simd>(&self, simd: S, factors: &Factors<'_, R>, columns: &mut [[R::Totals; SUMS]]) {
-        let Scheme { time_step_s: dt, beta2: gamma, beta_r_s } = *factors.scheme;
-        let damps = beta_r_s > 0.0;
+        let Scheme { time_step_s: dt, beta2: gamma, .. } = *factors.scheme;
+        let scale = scale_of_damping(factors.scheme);
+        let damps = scale > 0.0;
         let all = |value| splat::<R, S>(simd, value);
         let row = |row| load::<R, S>(simd, row);
         let [gain, per_p, u_scale] = [row(&factors.gain), row(&factors.per_p), row(&factors.u_scale)];
-        let [half, beta_r, of_a2] = [all(0.5), all(beta_r_s), all(0.5 * gamma * dt * dt)];
+        let [half, beta_r, of_a2] = [all(0.5), all(scale), all(0.5 * gamma * dt * dt)];
         let [dt, zero] = [all(dt), all(0.0)];
         let blocks = columns.len();
         columns.fill([R::Totals::default(); SUMS]);
@@ -274,6 +294,11 @@ impl<R: Number> AuditedMotion<'_, R> {
             }
         }
     }
+}
+
+/// What makes the field of [`PinAudit::begin`] the damping forces: that is K p, and β_R K p + α_R M p where there is α_R.
+fn scale_of_damping(scheme: &Scheme) -> f64 {
+    if scheme.alpha_r_per_s > 0.0 { 1.0 } else { scheme.beta_r_s }
 }
 
 /// Factor \[s²\] of a in the displacements of the step that each lane has just done.

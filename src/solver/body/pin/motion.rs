@@ -1,5 +1,5 @@
 //! Moves the nodes: u_{n+1} and p_{n+1} from the internal forces f at t_n, which the operator gives. Those
-//! of linear elasticity are K (u_n + β_R p_n).
+//! of linear elasticity are K (u_n + β_R p_n). Damping in proportion to the mass adds α_R m p_n.
 //!
 //! ```text
 //! a_n = −f/m       u_{n+1} = u_n + Δt p_n + c Δt² a_n       p_{n+1} = p_n + d Δt a_n
@@ -192,7 +192,15 @@ impl<S: Simd, R: Number> Moving<S, R> for Advance<'_, R> {
     }
 
     #[inline(always)]
-    fn take(&mut self, simd: S, index: BlockIndex, force: [R::Vector<S>; 3]) {
+    fn take(&mut self, simd: S, index: BlockIndex, mut force: [R::Vector<S>; 3]) {
+        if self.factors.alpha_r_per_s != 0.0 {
+            let alpha = R::Vector::<S>::splat(simd, R::from_f64(self.factors.alpha_r_per_s));
+            let inverse_mass = load::<R, S>(simd, self.inverse_masses.free.row(index.line, index.along));
+            let p = load_all::<R, S>(simd, &self.p[index.at].0);
+            for c in 0..3 {
+                force[c] += alpha * p[c] / inverse_mass;
+            }
+        }
         if self.inverse_masses.constrained_planes[index.plane] {
             for c in 0..3 {
                 force[c].store_array(&mut self.residual[index.at].0[c]);
