@@ -73,6 +73,8 @@ impl Comparison {
         };
         let errors = if judged.is_empty() {
             String::new()
+        } else if deviations.len() == 1 {
+            "; not within two standard errors".to_owned()
         } else {
             format!("; within two standard errors at {within} of {}", judged.len())
         };

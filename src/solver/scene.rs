@@ -36,7 +36,7 @@ impl Model {
             },
             beta2: numerics.beta2,
             beta_r_s: numerics.beta_r_s,
-            alpha_r_per_s: numerics.alpha_r_per_s,
+            alpha_r_per_s: numerics.alpha_r_per_s.unwrap_or(0.0),
             time_step: numerics
                 .time_step_s
                 .map_or(TimeStep::FractionOfLimit(numerics.safety_factor), TimeStep::Given),

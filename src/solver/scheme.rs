@@ -56,8 +56,6 @@ pub struct StepFactors<R: Number = f64> {
     pub time_step_s: f64,
     /// Stiffness-proportional damping `β_R` \[s\].
     pub beta_r_s: f64,
-    /// Mass-proportional damping `α_R` \[1/s\] of the pin.
-    pub alpha_r_per_s: f64,
     /// Δt \[s\] in the numbers of the fields.
     pub rounded_time_step_s: R,
     /// `β_R` \[s\] in the numbers of the fields.
@@ -88,7 +86,6 @@ impl Scheme {
         StepFactors {
             time_step_s: dt,
             beta_r_s: self.beta_r_s,
-            alpha_r_per_s: self.alpha_r_per_s,
             rounded_time_step_s: R::from_f64(dt),
             rounded_beta_r_s: R::from_f64(self.beta_r_s),
             u_scale: in_slots_of::<R>(&u_scale),

@@ -68,7 +68,7 @@ impl<const L: usize, R: RunNumber> StateOf<L, R> {
             load_n: [0.0; L],
             load_stroke_m: [[0.0; L]; 3],
             workspace: Workspace {
-                pin: NodeMotion::new(pin),
+                pin: NodeMotion::new(pin, model.scheme().alpha_r_per_s),
                 supports: AppliedSupports::new(model.supports(), pin.mesh().layout(), pin.masses_kg()),
                 load: AppliedLoad::new(model.load(), pin.mesh().layout(), L),
             },

@@ -399,10 +399,10 @@ impl JobSpec {
                 "0.5 with an elastic disk, whose energies are kept for the central difference only; damp with beta_r_s",
             );
         }
-        if self.numerics.alpha_r_per_s != 0.0 {
+        if let Some(alpha_r_per_s) = self.numerics.alpha_r_per_s.filter(|own| *own != 0.0) {
             found.add(
                 "numerics.alpha_r_per_s",
-                check::readable(self.numerics.alpha_r_per_s),
+                check::readable(alpha_r_per_s),
                 "0 with an elastic disk, which would have no such damping; damp with beta_r_s",
             );
         }

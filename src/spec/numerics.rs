@@ -47,8 +47,9 @@ pub struct Numerics {
     pub beta2: f64,
     /// Stiffness-proportional damping `β_R` (s), C = `β_R` K.
     pub beta_r_s: f64,
-    /// Mass-proportional damping `α_R` (1/s) of the pin beside it, C = `α_R` M + `β_R` K. Rigid disks only.
-    pub alpha_r_per_s: f64,
+    /// Mass-proportional damping `α_R` (1/s) of the pin beside it, C = `α_R` M + `β_R` K. Absent: none. Rigid disks only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alpha_r_per_s: Option<f64>,
     /// Fraction of the stability limit used as the time step when `time_step_s` is not given.
     pub safety_factor: f64,
     /// The time step (s); checked against the stability limit. Absent: `safety_factor` × limit.
@@ -65,7 +66,7 @@ impl Default for Numerics {
             beta2: 0.5,
             // The damping of β₂ = 1 at the time step of 55 ns of Baillet, d'Errico and Berthier (2005).
             beta_r_s: 2.75e-8,
-            alpha_r_per_s: 0.0,
+            alpha_r_per_s: None,
             safety_factor: 0.7,
             time_step_s: None,
             precision: Precision::Double,
@@ -77,7 +78,7 @@ impl Numerics {
     pub(super) fn check(&self, found: &mut Violations) {
         found.within("numerics.beta2", self.beta2);
         found.within("numerics.beta_r_s", self.beta_r_s);
-        found.within("numerics.alpha_r_per_s", self.alpha_r_per_s);
+        found.within_if_given("numerics.alpha_r_per_s", self.alpha_r_per_s);
         found.within("numerics.safety_factor", self.safety_factor);
         found.within_if_given("numerics.time_step_s", self.time_step_s);
     }

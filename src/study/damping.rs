@@ -82,7 +82,7 @@ impl Damping {
         }
         let (alpha_r_per_s, beta_r_s) = if damps_pin || self.holder_ratio.is_none() {
             let beta_r_s = self.beta_r_s(beta_r_s, gives("beta_r_s"))?;
-            self.with_second(beta_r_s).map_or((alpha_r_per_s, beta_r_s), |[alpha, beta]| (alpha, beta))
+            self.with_second(beta_r_s).map_or((alpha_r_per_s, beta_r_s), |[alpha, beta]| (Some(alpha), beta))
         } else {
             (alpha_r_per_s, beta_r_s)
         };

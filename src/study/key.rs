@@ -50,7 +50,7 @@ fn without_synonyms(spec: &JobSpec) -> JobSpec {
     if spec.scene.pin.shape == Shape::Mesh {
         reduce_mesh(&mut spec.scene.pin);
     }
-    let (holder, pin) = (&mut spec.scene.holder, &mut spec.scene.pin);
+    let (holder, pin, numerics) = (&mut spec.scene.holder, &mut spec.scene.pin, &mut spec.numerics);
     for nothing in [
         &mut holder.mass_kg,
         &mut holder.damping_x_n_s_m,
@@ -62,6 +62,7 @@ fn without_synonyms(spec: &JobSpec) -> JobSpec {
         &mut holder.inertia_y_kg_m2,
         &mut pin.tilt_x_deg,
         &mut pin.tilt_y_deg,
+        &mut numerics.alpha_r_per_s,
     ] {
         *nothing = nothing.filter(|value| *value != 0.0);
     }

@@ -15,7 +15,7 @@ pub(super) fn numerics(spec: &JobSpec, cases: &mut SharedKeys) -> JobNumerics {
         nodes: scene.pin.node_count() as u64,
         beta2: numerics.beta2,
         beta_r_s: numerics.beta_r_s,
-        alpha_r_per_s: numerics.alpha_r_per_s,
+        alpha_r_per_s: numerics.alpha_r_per_s.unwrap_or(0.0),
         safety_factor: numerics.time_step_s.is_none().then_some(numerics.safety_factor),
         limit_s: run.limit_s,
         stop_early: run.stop_early,

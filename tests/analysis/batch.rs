@@ -153,7 +153,7 @@ fn companions_and_interruptions_change_nothing_on_general_meshes() {
             job.scene.clamp.side = ClampSide::WholeTop;
             job.run.limit_s = job.run.limit_s.min(0.003);
             if disk == DiskKind::Rigid {
-                job.numerics.alpha_r_per_s = 1.0e3;
+                job.numerics.alpha_r_per_s = Some(1.0e3);
             }
         }
         companions_change_nothing_in(&jobs);

@@ -70,7 +70,10 @@ fn the_answer_is_json() {
     assert!(of("/region/mu/0") < of("/region/mu/1"), "{found}");
     assert!((of("/best/young_modulus_pa") / TRUTH[1] - 1.0).abs() < 0.3, "{found}");
     assert_eq!(of("/jobs"), 3.0 * of("/points"), "{found}");
-    assert_eq!(answer("mu=0.45,young_modulus_pa=5.9e9")["at"]["ruled_out"], true);
+    let far = answer("mu=0.45,young_modulus_pa=5.9e9");
+    assert_eq!(far["at"]["ruled_out"], true);
+    assert!(far["at"]["most_against"]["at"]["omega_rpm"].is_number(), "{far}");
+    assert_eq!(answer("mu=0.45,young_modulus_pa=5.9GPa"), far);
 }
 
 /// Protects: a file of measured points that cannot be used is refused with its line and with what would be right, and nothing is stored.

@@ -8,7 +8,9 @@ use tribosweep_output::publish::chart::Rgb;
 use tribosweep_output::publish::chart::palette::{BLUE, VERMILLION};
 use tribosweep_output::report::figure::Plot;
 use tribosweep_output::report::tables::{self, Quantity};
-use tribosweep_output::report::{JobRow, Measurement, Report, RowState, View, write, write_compared};
+use tribosweep_output::report::{
+    JobRow, Measurement, Parameters, Report, RowState, View, write, write_compared,
+};
 
 /// A study called `name` at 1, 10 and 100 rpm, with μ* = `offset` + 0.01 log₁₀ ω and an error of 0.0005.
 fn study(name: &str, offset: f64) -> Vec<JobRow> {
@@ -94,7 +96,50 @@ fn the_verdict_comes_first() {
     );
     assert_eq!(
         verdicts(&[at(10.0, 0.2, Some(0.001))])[0],
-        "μ*: simulated is 55 % above rig at the one point that is compared; within two standard errors at 0 of 1."
+        "μ*: simulated is 55 % above rig at the one point that is compared; not within two standard errors."
+    );
+}
+
+/// Protects: the verdict says which parameters of another study could move the quantity the right way, from which value to which and by how
+/// much: the mean over pairs of jobs that differ in one parameter alone. What moves it by less than a tenth of the difference is named as such,
+/// and the speed along the axis explains nothing.
+#[test]
+fn a_verdict_names_what_could_move_it() {
+    let mut rows = study("simulated", 0.3);
+    rows.extend([measured(1.0, 0.4, 0.25, Some(0.001)), measured(10.0, 0.4, 0.26, Some(0.001))]);
+    // Its mean is 0.84. It falls by 0.04 with E, rises by 0.02 with the load, and hardly depends on the width of the clamp.
+    let mut variation = Vec::new();
+    for (omega, modulus, load, width) in (0..16)
+        .map(|i| ([1.0, 10.0][i % 2], [1e9, 2e9][i / 2 % 2], [20.0, 30.0][i / 4 % 2], [0.001, 0.002][i / 8]))
+    {
+        let mu_star = 0.3 + 0.1 * omega - 0.04e-9 * modulus + 0.002 * load + 0.5 * width;
+        let mut job = row(omega, 0.4, periodic(mu_star));
+        let grid =
+            [("omega_rpm", omega), ("young_modulus_pa", modulus), ("load_n", load), ("clamp_width_m", width)];
+        let grid = grid.map(|(name, x)| (name.to_owned(), x.into())).into();
+        job.parameters = Parameters::new(f64::NAN, 0.4, grid);
+        variation.push(job);
+    }
+    let verdict = |variation: &[JobRow]| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let report = Report { variation: Some(("scan", variation)), ..report(&rows) };
+        write_compared(&report, folder.path()).expect("the report is written").verdicts.remove(0)
+    };
+    assert_eq!(
+        verdict(&variation),
+        "μ*: simulated is 20 % above rig at all 2 points (+19 % to +20 %); within two standard errors at 0 of 2. What could lower it, by \
+         scan: a larger young_modulus (1 GPa to 2 GPa: −4.8 %), a smaller load (30 N to 20 N: −2.4 %). Hardly: clamp_width."
+    );
+    let of_speed: Vec<JobRow> = variation
+        .into_iter()
+        .filter(|job| job.parameters.get("young_modulus_pa") == Some(&1e9.into()))
+        .collect();
+    let weak: Vec<JobRow> =
+        of_speed.into_iter().filter(|job| job.parameters.get("load_n") == Some(&20.0.into())).collect();
+    assert!(
+        verdict(&weak).ends_with("Nothing that scan varies moves it by a tenth of that."),
+        "{}",
+        verdict(&weak)
     );
 }
 

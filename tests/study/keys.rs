@@ -26,6 +26,7 @@ fn with_elastic_disk() -> JobSpec {
 /// A job in which every optional field is given.
 pub fn full() -> JobSpec {
     let mut spec = with_elastic_disk();
+    spec.numerics.alpha_r_per_s = Some(100.0);
     spec.scene.pin.elements = [12, 15, 11];
     spec.scene.contact = Contact {
         mu: 0.4,

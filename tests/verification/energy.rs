@@ -64,7 +64,7 @@ fn closes_to_rounding_when_every_step_is_audited() {
                 let mut spec = spec();
                 spec.numerics.beta2 = beta2;
                 spec.numerics.beta_r_s = beta_r_s;
-                spec.numerics.alpha_r_per_s = alpha_r_per_s;
+                spec.numerics.alpha_r_per_s = Some(alpha_r_per_s);
                 spec.scene.top = top;
                 let (ledger, steps) = run(&spec, 1);
                 let energies = ledger.energies(0);
@@ -92,7 +92,7 @@ fn closes_to_rounding_in_single_precision() {
             let mut spec = spec();
             spec.numerics.beta2 = beta2;
             spec.numerics.beta_r_s = beta_r_s;
-            spec.numerics.alpha_r_per_s = alpha_r_per_s;
+            spec.numerics.alpha_r_per_s = Some(alpha_r_per_s);
             let (ledger, steps) = run_in::<f32>(&spec, 1);
             let residual = ledger.energies(0).relative_residual();
             let bound = (ROUNDINGS_PER_FORCE * steps as f64).sqrt() * f64::from(f32::EPSILON);

@@ -140,7 +140,7 @@ fn a_law_gets_the_step_before() {
     let steps_done = [state.steps_done(0)];
     let factors = model.scheme().step_factors(&steps_done);
     let given = StepData { factors: &factors, drives: &[DRIVE], steps_done: &steps_done };
-    let motion = NodeMotion::<1, f64>::new(model.pin());
+    let motion = NodeMotion::<1, f64>::new(model.pin(), 0.0);
     let mut target = TargetState::<1>::at_rest(model.interface(), model.target());
     let (mut u, mut p) = (state.u.clone(), state.p.clone());
     target.solve_with::<ExposingLaw>(&given, &mut motion.face(&mut u, &mut p), &mut state.contacts);
@@ -169,7 +169,7 @@ fn solved(state: &State<1>, model: &Model, drive: &Drive, mut target: TargetStat
     let steps_done = [state.steps_done(0)];
     let factors = model.scheme().step_factors(&steps_done);
     let given = StepData { factors: &factors, drives: std::array::from_ref(drive), steps_done: &steps_done };
-    let mut motion = NodeMotion::<1, f64>::new(model.pin());
+    let mut motion = NodeMotion::<1, f64>::new(model.pin(), 0.0);
     let (mut u, mut p) = (state.u.clone(), state.p.clone());
     let (mut history, mut contacts) = (state.history.clone(), state.contacts.clone());
     motion.advance_free_planes(model.pin(), &factors, &mut u, &mut p, history.numbers_mut());

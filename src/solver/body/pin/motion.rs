@@ -35,6 +35,8 @@ pub struct Face<'a, const L: usize, R: Number = f64> {
 #[derive(Debug, Clone)]
 pub(in crate::solver) struct NodeMotion<const L: usize, R: Number> {
     inverse_masses: InverseMasses<R>,
+    /// α_R m \[N s/m\] of every node, if there is damping in proportion to the mass.
+    mass_dampers: Option<LineTable<R>>,
     /// Scratch of the internal forces.
     scratch: Scratch<R>,
     /// Internal minus external forces \[N\] on the constrained planes.
@@ -55,8 +57,9 @@ struct InverseMasses<R: Number> {
 }
 
 impl<const L: usize, R: Number> NodeMotion<L, R> {
-    pub fn new(pin: &PinBody) -> Self {
+    pub fn new(pin: &PinBody, alpha_r_per_s: f64) -> Self {
         let mesh = pin.mesh();
+        let damper = |node: usize| alpha_r_per_s * pin.masses_kg()[node];
         let mut per_dof = FieldOf::<L, R>::zeros(mesh.layout());
         for (dof, freedom) in pin.freedoms().iter().enumerate() {
             let value = match freedom {
@@ -77,6 +80,7 @@ impl<const L: usize, R: Number> NodeMotion<L, R> {
                 constrained_planes: pin.constrained_planes().to_vec(),
                 blocks_per_plane,
             },
+            mass_dampers: (alpha_r_per_s > 0.0).then(|| LineTable::new(mesh, L, damper)),
             scratch: pin.operator().scratch(mesh.layout(), L),
             residual: FieldOf::zeros(mesh.layout()),
         }
@@ -103,6 +107,7 @@ impl<const L: usize, R: Number> NodeMotion<L, R> {
     ) {
         let mut advance = Advance {
             inverse_masses: &self.inverse_masses,
+            mass_dampers: self.mass_dampers.as_ref(),
             factors,
             u: u.blocks_mut(),
             p: p.blocks_mut(),
@@ -163,6 +168,7 @@ fn move_nodes_in<R: Number, S: Simd>(
 
 struct Advance<'a, R: Number> {
     inverse_masses: &'a InverseMasses<R>,
+    mass_dampers: Option<&'a LineTable<R>>,
     factors: &'a StepFactors<R>,
     u: &'a mut [Block<R>],
     p: &'a mut [Block<R>],
@@ -193,12 +199,11 @@ impl<S: Simd, R: Number> Moving<S, R> for Advance<'_, R> {
 
     #[inline(always)]
     fn take(&mut self, simd: S, index: BlockIndex, mut force: [R::Vector<S>; 3]) {
-        if self.factors.alpha_r_per_s != 0.0 {
-            let alpha = R::Vector::<S>::splat(simd, R::from_f64(self.factors.alpha_r_per_s));
-            let inverse_mass = load::<R, S>(simd, self.inverse_masses.free.row(index.line, index.along));
+        if let Some(dampers) = self.mass_dampers {
+            let damper = load::<R, S>(simd, dampers.row(index.line, index.along));
             let p = load_all::<R, S>(simd, &self.p[index.at].0);
             for c in 0..3 {
-                force[c] += alpha * p[c] / inverse_mass;
+                force[c] += damper * p[c];
             }
         }
         if self.inverse_masses.constrained_planes[index.plane] {
