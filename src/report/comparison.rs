@@ -24,7 +24,7 @@ pub(super) struct Comparison {
     /// Where one source squeals and the reference does not, or the reverse.
     pub contradictions: Vec<Contradiction>,
     /// Points at which both say whether it squeals.
-    compared_squeals: usize,
+    pub compared_squeals: usize,
     /// What a reader must know, one sentence each: inputs that differ, points without a counterpart.
     pub notes: Vec<String>,
     /// Of each source none of whose points can be compared with the reference, a sentence.

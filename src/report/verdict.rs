@@ -29,10 +29,18 @@ impl Difference {
 }
 
 impl Comparison {
-    /// A sentence for each source and quantity, in the order of the sources.
+    /// A sentence for each source and quantity, in the order of the sources, and one for squeal if nothing contradicts it.
     pub(super) fn verdicts(&self) -> Vec<String> {
         let same = |a: &Difference, b: &Difference| a.source == b.source && a.scalar == b.scalar;
-        self.differences.chunk_by(same).filter_map(|part| self.verdict(part)).collect()
+        let of_quantities = self.differences.chunk_by(same).filter_map(|part| self.verdict(part));
+        let of_squeal = (self.contradictions.is_empty() && self.compared_squeals > 0).then(|| {
+            let points = match self.compared_squeals {
+                1 => "the one point".to_owned(),
+                several => format!("all {}", count(several as u64, "point")),
+            };
+            format!("squeal: the same at {points} where both say whether it squeals.")
+        });
+        of_quantities.chain(of_squeal).collect()
     }
 
     fn verdict(&self, part: &[Difference]) -> Option<String> {
