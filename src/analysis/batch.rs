@@ -135,19 +135,24 @@ impl Batch {
             let beginning = parent.and_then(|motion| continuation::beginning(&spec, model, motion));
             let parent = key.to_owned();
             let beginning = beginning.ok_or(JobError::NoParentMotion { parent })?;
-            return self.begin_own(Ready { ticket, spec, beginning });
+            return self.begin_with(ticket, spec, beginning);
         }
+        self.begin_with(ticket, spec, Beginning::REST)
+    }
+
+    /// Begins a job on its coarser mesh, if it has one, or else on its own.
+    fn begin_with(&mut self, ticket: u64, spec: JobSpec, beginning: Beginning) -> Result<Begun, JobError> {
         match self.coarser_of(&spec) {
-            Some(coarser) => match coarser.begin(ticket, spec) {
+            Some(coarser) => match coarser.begin(ticket, spec, beginning.motion) {
                 Some(Prepared::GoesOn(ready)) => self.begin_own(*ready),
                 Some(Prepared::Reached(record)) => Ok(Begun::Decided(record)),
                 None => Ok(Begun::Runs),
             },
-            None => self.begin_own(Ready { ticket, spec, beginning: Beginning::REST }),
+            None => self.begin_own(Ready { ticket, spec, beginning }),
         }
     }
 
-    /// The batch on the coarser mesh from which a job starts; none if it starts from rest.
+    /// The batch on the coarser mesh of a job; none if it has none.
     fn coarser_of(&mut self, spec: &JobSpec) -> Option<&mut CoarserBatch> {
         coarser(spec)?;
         if self.coarser.is_none() {
@@ -275,7 +280,7 @@ pub(super) fn prepared(
     let Some(mut coarser) = CoarserBatch::of(spec, structures.clone()) else {
         return Ok(Prepared::GoesOn(Box::new(at_rest())));
     };
-    if let Some(prepared) = coarser.begin(0, spec.clone()) {
+    if let Some(prepared) = coarser.begin(0, spec.clone(), None) {
         return Ok(prepared);
     }
     loop {
@@ -299,6 +304,8 @@ struct CoarserBatch {
 struct Preparing {
     spec: JobSpec,
     coarse: JobSpec,
+    /// The motion that the job continues on its own mesh.
+    continued: Option<PinMotion>,
 }
 
 /// A job that can begin on its own mesh.
@@ -329,8 +336,8 @@ impl CoarserBatch {
     }
 
     /// Begins a job. Returns it if there is no run: the coarser mesh refuses it, or eigenvalues decide it.
-    pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Option<Prepared> {
-        let job = Preparing { coarse: coarser(&spec)?, spec };
+    pub fn begin(&mut self, ticket: u64, spec: JobSpec, continued: Option<PinMotion>) -> Option<Prepared> {
+        let job = Preparing { coarse: coarser(&spec)?, spec, continued };
         let result = match self.batch.begin(ticket, job.coarse.clone()) {
             Ok(Begun::Runs) => {
                 self.jobs.insert(ticket, job);
@@ -361,12 +368,23 @@ impl CoarserBatch {
 
     /// The checkpoint of a job; none if there is no such job.
     pub fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>> {
-        self.batch.checkpoint(ticket)
+        let mut bytes = self.batch.checkpoint(ticket)?;
+        let continued = self.jobs.get(&ticket)?.continued.as_ref();
+        let motion = continued.map(continuation::to_bytes).unwrap_or_default();
+        bytes.extend(&motion);
+        bytes.extend((motion.len() as u64).to_le_bytes());
+        Some(bytes)
     }
 
     /// Continues a job from its [`Self::checkpoint`].
     pub fn resume(&mut self, ticket: u64, spec: JobSpec, bytes: &[u8]) -> Result<(), Unreadable> {
-        let job = Preparing { coarse: coarser(&spec).ok_or(Unreadable)?, spec };
+        let (bytes, length) = bytes.split_last_chunk().ok_or(Unreadable)?;
+        let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|_| Unreadable)?;
+        let split = bytes.len().checked_sub(length).ok_or(Unreadable)?;
+        let (bytes, motion) = bytes.split_at(split);
+        let continued =
+            if length == 0 { None } else { Some(continuation::from_bytes(motion).ok_or(Unreadable)?) };
+        let job = Preparing { coarse: coarser(&spec).ok_or(Unreadable)?, spec, continued };
         self.batch.resume(ticket, job.coarse.clone(), bytes)?;
         self.jobs.insert(ticket, job);
         Ok(())
@@ -411,7 +429,7 @@ impl Preparing {
             start: record.and_then(|record| record.start).map(Box::new),
         };
         let motion = end.motion.filter(|_| start.is_used()).map(|motion| motion.interpolated(&from, &to));
-        let beginning = Beginning { motion, start: Some(start) };
+        let beginning = Beginning { motion: self.continued.or(motion), start: Some(start) };
         Prepared::GoesOn(Box::new(Ready { ticket: end.ticket, spec: self.spec, beginning }))
     }
 }

@@ -90,6 +90,7 @@ pub fn coarser(spec: &JobSpec) -> Option<JobSpec> {
         coarse.numerics.safety_factor = Numerics::default().safety_factor;
     }
     coarse.run.stop_early = true;
+    coarse.continuation = None;
     let with = |elements| {
         let mut coarse = coarse.clone();
         coarse.scene.pin.elements = elements;

@@ -154,7 +154,9 @@ impl JobSpec {
             Start::Compared => is_rigid || self.has_run(),
         };
         let has_steady_state = !self.has_run() || self.scene.program.is_constant();
-        if !is_asked || !has_steady_state || self.continuation.is_some() {
+        // A job that continues another one has its beginning on its own mesh, and can be compared with a run from rest on another.
+        let is_continued = self.continuation.is_some() && self.run.start != Start::Compared;
+        if !is_asked || !has_steady_state || is_continued {
             return Vec::new();
         }
         let Some(own) = self.scene.pin.own_elements() else { return Vec::new() };

@@ -454,6 +454,54 @@ fn jobs_of_other_models_are_not_taken() {
     assert!(!changed(|job| job.numerics.precision = Precision::Single));
 }
 
+/// Runs a job that may continue the motion of another one, with an interruption after each `pause` turns. Returns its record and its last
+/// motion.
+fn run_after(job: &JobSpec, parent: Option<PinMotion>, pause: usize) -> (JobRecord, PinMotion) {
+    let mut batch = Batch::new(job).unwrap();
+    batch.begin_after(1, job.clone(), parent).unwrap();
+    let mut turns = 0;
+    loop {
+        if let Some(ended) = batch.advance().pop() {
+            return (ended.result.unwrap(), ended.motion.unwrap());
+        }
+        turns += 1;
+        if turns % pause == 0 {
+            let kept = batch.checkpoint(1).unwrap();
+            batch = Batch::new(job).unwrap();
+            batch.resume(1, job.clone(), &kept).unwrap();
+        }
+    }
+}
+
+/// Protects: a job that continues another one can have a run from rest on a coarser mesh beside it. That changes neither its result nor its
+/// last motion, gives a value to compare with, and can be interrupted.
+#[test]
+fn a_job_that_continues_another_can_be_compared() {
+    let mut root = coarse();
+    root.scene.pin.elements = [10, 10, 10];
+    root.scene.contact.mu = 0.5;
+    root.detection.cycles = 4;
+    root.detection.tolerance = 0.3;
+    root.detection.drift_tolerance = 0.2;
+    root.continuation = Some(Box::new(Continuation::ROOT));
+    let (_, motion) = run_after(&root, None, usize::MAX);
+    let mut child = root.clone();
+    child.scene.disk.omega_rpm *= 1.2;
+    child.continuation =
+        Some(Box::new(Continuation { parent: Some("key".to_owned()), ..Continuation::ROOT }));
+    let (alone, end) = run_after(&child, Some(motion.clone()), usize::MAX);
+    child.run.start = Start::Compared;
+    let (compared, same_end) = run_after(&child, Some(motion.clone()), usize::MAX);
+    assert_eq!((compared.mu_star, compared.frequency_hz), (alone.mu_star, alone.frequency_hz));
+    assert_eq!(same_end, end);
+    let start = compared.start.clone().expect("a coarser run");
+    assert!(!start.is_used() && start.mu_star.is_some(), "{start:?}");
+    for pause in [1, 7] {
+        let (again, _) = run_after(&child, Some(motion.clone()), pause);
+        assert_eq!(serde_json::to_string(&again).unwrap(), serde_json::to_string(&compared).unwrap());
+    }
+}
+
 /// Protects: a job that continues a limit cycle begins in it: it is periodic long before the run from rest was, in the same limit cycle.
 /// Interruptions change no bit of it. Without the motion that it continues it is refused.
 #[test]
@@ -463,22 +511,7 @@ fn a_job_continues_the_limit_cycle_of_another() {
     root.scene.disk.omega_rpm = 7.0;
     root.run.limit_s = 0.1;
     root.continuation = Some(Box::new(Continuation::ROOT));
-    let run = |job: &JobSpec, parent: Option<PinMotion>, pause: usize| {
-        let mut batch = Batch::new(job).unwrap();
-        batch.begin_after(1, job.clone(), parent).unwrap();
-        let mut turns = 0;
-        loop {
-            if let Some(ended) = batch.advance().pop() {
-                return (ended.result.unwrap(), ended.motion.unwrap());
-            }
-            turns += 1;
-            if turns % pause == 0 {
-                let kept = batch.checkpoint(1).unwrap();
-                batch = Batch::new(job).unwrap();
-                batch.resume(1, job.clone(), &kept).unwrap();
-            }
-        }
-    };
+    let run = run_after;
     let (first, motion) = run(&root, None, usize::MAX);
     assert_eq!(first.outcome, Outcome::Periodic);
     let mut child = root.clone();

@@ -121,8 +121,6 @@ fn no_coarser_mesh(spec: &JobSpec) -> Option<Doubt> {
     let is_asked = spec.accuracy.is_some() || spec.run.start == Start::Compared;
     let why = if spec.scene.pin.own_elements().is_none() {
         "the program makes no coarser mesh of one from a file"
-    } else if spec.continuation.is_some() {
-        "a job that continues another one stays on its mesh"
     } else if !spec.scene.program.is_constant() {
         "a run with a program has no steady state to compare"
     } else {
