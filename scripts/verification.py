@@ -41,6 +41,7 @@ BENCHMARKS = {
     "B21": "A disk with run-out and waviness",
     "B22": "A compliant contact layer",
     "B23": "General meshes: cylinders, tilt, regions",
+    "B24": "Elements that bend: Cook's membrane",
     "Flutter": "Linear flutter of the pin",
     "R1": "Ring: eigenfrequencies",
     "R2": "Ring: static deflection",

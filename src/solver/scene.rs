@@ -117,10 +117,10 @@ impl Model {
 fn pin_mesh(pin: &Pin) -> Result<PinMesh, SolverError> {
     let tilt = tilt(pin);
     let [across, _, along] = pin.elements;
-    let parts = match pin.shape {
+    let mut parts = match pin.shape {
         Shape::Block => {
             let block = BlockMesh::new(pin.extent_m(), pin.elements);
-            if tilt == Tilt::default() && pin.regions.is_empty() {
+            if pin.is_plain_block() {
                 return Ok(block.into());
             }
             MeshParts::of_block(&block)
@@ -128,6 +128,7 @@ fn pin_mesh(pin: &Pin) -> Result<PinMesh, SolverError> {
         Shape::Cylinder => cylinder(pin.extent_m(), across, along),
         Shape::Mesh => from_file(pin)?,
     };
+    parts.element = pin.element;
     Ok(GeneralMesh::new(&with_regions(parts, pin), tilt)?.into())
 }
 
@@ -168,6 +169,7 @@ fn from_file(pin: &Pin) -> Result<MeshParts, SolverError> {
         top: content.load.iter().map(face).collect(),
         clamped: Some(content.clamp.iter().map(|&node| node as usize).collect()),
         divisions: None,
+        element: pin.element,
         coordinates_m: content.nodes_m,
     })
 }

@@ -46,7 +46,7 @@ pub use limit::{End, LIMITS, Limit};
 pub use mesh::{MeshContent, MeshFile};
 pub use mu_of_speed::{MOST_PAIRS, MuOfSpeed, Segment};
 pub use numerics::{Numerics, Precision, RunControl, Start};
-pub use pin::{FEWEST_ACROSS, Pin, Region, Shape, core_elements};
+pub use pin::{Element, FEWEST_ACROSS, Pin, Region, Shape, core_elements};
 pub use program::MOST_POINTS;
 pub use program::{Change, Program, Table};
 pub use ring::{DiskTimeStep, Ring, TargetSurface};

@@ -41,6 +41,27 @@ impl Shape {
     }
 }
 
+/// The element of a general mesh: that of a cylinder, a tilted pin, a pin with regions or from a file, and of an elastic disk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema, IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum Element {
+    /// Trilinear, with full integration. It bends too stiffly where few elements lie across.
+    #[default]
+    Full,
+    /// The same with three modes of its own for each component of the displacements, which let it bend (Taylor, Beresford and Wilson
+    /// 1976). A time step costs the same.
+    Incompatible,
+}
+
+impl Element {
+    /// Whether it is the one that a study has if it gives none.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that serde calls")]
+    pub(super) fn is_full(&self) -> bool {
+        *self == Self::Full
+    }
+}
+
 /// A region of the pin with another material, for example the backing plate of a pad.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -84,6 +105,9 @@ pub struct Pin {
     pub size_m: [f64; 3],
     /// Number of elements in x, y and z.
     pub elements: [usize; 3],
+    /// The element. An upright block of one material with another one than `full` is computed as a general mesh.
+    #[serde(skip_serializing_if = "Element::is_full")]
+    pub element: Element,
     /// Young's modulus (Pa).
     pub young_modulus_pa: f64,
     /// Poisson's ratio, −1 < ν < 0.5.
@@ -108,6 +132,7 @@ impl Default for Pin {
         Self {
             size_m: [0.012, 0.015, 0.010],
             elements: [12, 15, 10],
+            element: Element::Full,
             young_modulus_pa: 1.0e9,
             poisson_ratio: 0.3,
             density_kg_m3: 2500.0,
@@ -131,7 +156,10 @@ impl Pin {
 
     /// Whether the pin is an upright block of one material, for which there is a faster form of the stiffness.
     pub fn is_plain_block(&self) -> bool {
-        self.shape == Shape::Block && self.regions.is_empty() && !self.is_tilted()
+        self.shape == Shape::Block
+            && self.element == Element::Full
+            && self.regions.is_empty()
+            && !self.is_tilted()
     }
 
     /// Whether the base is a plane that is parallel to the disk. A mesh from a file may have any base.

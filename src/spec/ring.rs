@@ -1,7 +1,7 @@
 //! The body of an elastic disk.
 
 use super::check::Violations;
-use super::pin::Pin;
+use super::pin::{Element, Pin};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +26,9 @@ pub struct Ring {
     pub element_size_m: f64,
     /// Largest edge (m) of the elements far from it.
     pub coarse_element_size_m: f64,
+    /// The element.
+    #[serde(skip_serializing_if = "Element::is_full")]
+    pub element: Element,
     /// Arc [°] that the pin's centre may sweep during the run; under it the mesh is fine. 360: all around.
     pub track_arc_deg: f64,
     /// How the target surface is interpolated between its nodes.
@@ -69,6 +72,7 @@ impl Default for Ring {
             density_kg_m3: 7800.0,
             element_size_m: 0.0025,
             coarse_element_size_m: 0.012,
+            element: Element::Full,
             track_arc_deg: 25.0,
             target: TargetSurface::Bilinear,
             clock: DiskTimeStep::Own,

@@ -7,8 +7,8 @@ use super::plausible::{DENSITY, FRICTION, LENGTH, MODULUS, Plausible};
 use super::preset::Preset;
 use super::suggest;
 use crate::spec::{
-    ClampSide, DiskKind, DiskTimeStep, FrictionLaw, Precision, Shape, StabilityMethod, Start, TargetSurface,
-    TopFace,
+    ClampSide, DiskKind, DiskTimeStep, Element, FrictionLaw, Precision, Shape, StabilityMethod, Start,
+    TargetSurface, TopFace,
 };
 use crate::units::name_and_unit;
 use schemars::{Schema, SchemaGenerator};
@@ -66,6 +66,7 @@ const FRICTION_LAW: Kind = Kind::Name(SchemaGenerator::subschema_for::<FrictionL
 const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
 const TARGET: Kind = Kind::Name(SchemaGenerator::subschema_for::<TargetSurface>);
 const PRESET: Kind = Kind::Name(SchemaGenerator::subschema_for::<Preset>);
+const ELEMENT: Kind = Kind::Name(SchemaGenerator::subschema_for::<Element>);
 const PRECISION: Kind = Kind::Name(SchemaGenerator::subschema_for::<Precision>);
 const STABILITY: Kind = Kind::Name(SchemaGenerator::subschema_for::<StabilityMethod>);
 const START: Kind = Kind::Name(SchemaGenerator::subschema_for::<Start>);
@@ -100,6 +101,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("disk_thickness_m", "/scene/disk/ring/thickness_m", Kind::Number, "thickness of an elastic disk").symbol("h_d").plausible(&LENGTH),
     parameter("disk_element_size_m", "/scene/disk/ring/element_size_m", Kind::Number, "largest element of an elastic disk under the track"),
     parameter("disk_coarse_element_size_m", "/scene/disk/ring/coarse_element_size_m", Kind::Number, "largest element of an elastic disk elsewhere"),
+    parameter("disk_element", "/scene/disk/ring/element", ELEMENT, "element of an elastic disk"),
     parameter("track_arc_deg", "/scene/disk/ring/track_arc_deg", Kind::Number, "arc of an elastic disk that the pin may sweep"),
     parameter("target", "/scene/disk/ring/target", TARGET, "how an elastic disk's surface is interpolated"),
     parameter("disk_clock", "/scene/disk/ring/clock", DISK_TIME_STEP, "whether an elastic disk has its own time step"),
@@ -110,6 +112,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("nx", "/scene/pin/elements/0", Kind::Count, "elements in x, the radial direction").symbol("n_x"),
     parameter("ny", "/scene/pin/elements/1", Kind::Count, "elements in y, the sliding direction").symbol("n_y"),
     parameter("nz", "/scene/pin/elements/2", Kind::Count, "elements in z").symbol("n_z"),
+    parameter("element", "/scene/pin/element", ELEMENT, "element of a pin that is no upright block of one material"),
     parameter("pin_shape", "/scene/pin/shape", PIN_SHAPE, "shape of the pin"),
     parameter("diameter_m", "/scene/pin/diameter_m", Kind::Number, "diameter of a cylindrical pin").symbol("d").plausible(&LENGTH),
     parameter("tilt_x_deg", "/scene/pin/tilt_x_deg", Kind::Number, "tilt of the pin about x, which lifts its trailing end"),

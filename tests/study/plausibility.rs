@@ -203,7 +203,8 @@ fn a_clamp_that_is_no_strip_is_named() {
     let moved = clamp("inner_side", 0.0022);
     assert_contains(&moved[0].to_string(), &["width_m = 0.0022: this mesh holds a strip of 0.002 m"]);
     // The rows of a cylinder are as regular along its height as those of a block.
-    for pin in ["", r#""pin": { "shape": "cylinder", "diameter_m": 0.008 },"#] {
+    let cylinder = r#""pin": { "shape": "cylinder", "diameter_m": 0.008, "size_m": [0.008, 0.008, 0.01], "elements": [8, 8, 10] },"#;
+    for pin in ["", cylinder] {
         let collet = of_scene(&format!(r#"{pin} "clamp": {{ "side": "collet", "width_m": 0.0022 }}"#));
         let message = warnings(&collet)[0].to_string();
         assert_contains(&message, &["width_m = 0.0022: this mesh holds a length of 0.002 m"]);

@@ -10,7 +10,7 @@ use tribosweep_mechanics::solver::interface::law::Law;
 use tribosweep_mechanics::solver::interface::target::TargetDefinition;
 use tribosweep_mechanics::solver::material::Material;
 use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State};
-use tribosweep_mechanics::spec::{DiskTimeStep, TargetSurface};
+use tribosweep_mechanics::spec::{DiskTimeStep, Element, TargetSurface};
 
 /// Radius of the ring over the block's width.
 const STRAIGHT: f64 = 1.0e7;
@@ -39,6 +39,7 @@ pub fn on_block(base: ModelDefinition, below: &Below) -> Model {
         Vec::new()
     };
     let disk = RingDefinition {
+        element: Element::Full,
         mesh,
         material: below.material,
         held,

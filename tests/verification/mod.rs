@@ -16,6 +16,7 @@ mod common;
 mod cycle_identities;
 mod dissipation;
 mod elastic;
+mod elements;
 mod energy;
 mod evidence;
 mod flutter;

@@ -8,7 +8,7 @@ use tribosweep_mechanics::solver::interface::target::TargetDefinition;
 use tribosweep_mechanics::solver::material::Material;
 use tribosweep_mechanics::solver::support::Support;
 use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, TimeStep};
-use tribosweep_mechanics::spec::{DiskTimeStep, TargetSurface};
+use tribosweep_mechanics::spec::{DiskTimeStep, Element, TargetSurface};
 use tribosweep_mechanics::stability::SparseStructure;
 
 const ALUMINIUM: Material = Material { young_modulus_pa: 7.0e10, poisson_ratio: 0.33, density_kg_m3: 2700.0 };
@@ -29,6 +29,7 @@ fn rig(pin: [usize; 3], disk: [usize; 3], tilt_deg: f64) -> Model {
         supports: vec![Support::fixed(top.into_iter().flat_map(|node| 3 * node..3 * node + 3))],
         load: Vec::new(),
         target: TargetDefinition::Ring(RingDefinition {
+            element: Element::Full,
             mesh: ring,
             material: ALUMINIUM,
             held,

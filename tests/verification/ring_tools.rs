@@ -6,7 +6,7 @@ use tribosweep_mechanics::solver::body::ring::RingMesh;
 use tribosweep_mechanics::solver::body::ring::operator::{RingOperator, RingScratch};
 use tribosweep_mechanics::solver::field::Field;
 use tribosweep_mechanics::solver::material::Material;
-use tribosweep_mechanics::spec::{DiskTimeStep, Pin, Ring, TargetSurface};
+use tribosweep_mechanics::spec::{DiskTimeStep, Element, Pin, Ring, TargetSurface};
 
 /// The reference ring's steel.
 pub const STEEL: Material = Material { young_modulus_pa: 2.1e11, poisson_ratio: 0.3, density_kg_m3: 7800.0 };
@@ -41,6 +41,7 @@ pub fn graded_mesh(element_size_m: f64, coarse_element_size_m: f64) -> RingMesh 
         density_kg_m3: STEEL.density_kg_m3,
         element_size_m,
         coarse_element_size_m,
+        element: Element::Full,
         track_arc_deg: 1.0,
         target: TargetSurface::Bilinear,
         clock: DiskTimeStep::Own,

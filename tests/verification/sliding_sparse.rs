@@ -19,7 +19,9 @@ use tribosweep_mechanics::solver::interface::target::TargetDefinition;
 use tribosweep_mechanics::solver::material::Material;
 use tribosweep_mechanics::solver::support::Support;
 use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, TimeStep};
-use tribosweep_mechanics::spec::{ClampSide, DiskKind, DiskTimeStep, FrictionLaw, JobSpec, TargetSurface};
+use tribosweep_mechanics::spec::{
+    ClampSide, DiskKind, DiskTimeStep, Element, FrictionLaw, JobSpec, TargetSurface,
+};
 use tribosweep_mechanics::stability::{SparseStructure, Structure};
 
 fn model(spec: &JobSpec) -> Model {
@@ -182,6 +184,7 @@ fn a_mode_of_the_disk_is_left_alone() {
         stiffness: Stiffness::Elastic,
         load: Vec::new(),
         target: TargetDefinition::Ring(RingDefinition {
+            element: Element::Full,
             mesh,
             material: ALUMINIUM,
             held,

@@ -1,4 +1,4 @@
-//! The trilinear hexahedron with full 2 × 2 × 2 integration.
+//! The trilinear hexahedron with full 2 × 2 × 2 integration, and the same with incompatible modes.
 //!
 //! ```text
 //!        6────────7        z
@@ -10,6 +10,7 @@
 //! ```
 
 use crate::solver::material::Material;
+use crate::spec::Element;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// The 24 × 24 stiffness matrix of one element, rows and columns `3·node + component` \[N/m\].
@@ -26,21 +27,7 @@ pub fn stiffness(material: &Material, h: [f64; 3]) -> ElementStiffness {
     let mut k = ElementStiffness::zeros();
     for point in 0..8 {
         let gradients = gradients_at(gauss_point(point), h);
-        for (a, ga) in gradients.iter().enumerate() {
-            for (b, gb) in gradients.iter().enumerate() {
-                let dot = ga.dot(gb);
-                for i in 0..3 {
-                    for j in 0..3 {
-                        // σ = λ tr ε 1 + 2G ε in index form.
-                        let mut value = lambda * ga[i] * gb[j] + shear * ga[j] * gb[i];
-                        if i == j {
-                            value += shear * dot;
-                        }
-                        k[(3 * a + i, 3 * b + j)] += weight * value;
-                    }
-                }
-            }
-        }
+        add_products(&mut k, &gradients, &gradients, [lambda, shear], weight);
     }
     // Rounding differs between (a, b) and (b, a). Energies are exact only if the operator is exactly symmetric.
     (k + k.transpose()) * 0.5
@@ -48,43 +35,80 @@ pub fn stiffness(material: &Material, h: [f64; 3]) -> ElementStiffness {
 
 /// Stiffness \[N/m\] and row-sum lumped volumes \[m³\] of an isoparametric hexahedron with these corners \[m\],
 /// numbered as in the figure above, by 2 × 2 × 2 Gauss points. `None` if the element is inverted at one of them.
+///
+/// An incompatible element has the functions 1 − ξ², 1 − η² and 1 − ζ² beside those of its corners. Their gradients are taken with the
+/// Jacobian J₀ of the centre and the factor |J₀|/|J|, so that their mean over the element is zero: then the patch test holds on any mesh
+/// (R. L. Taylor, P. J. Beresford and E. L. Wilson, *A non-conforming element for stress analysis*, IJNME 10, 1976). What they
+/// contribute is found once, from the condition that no force acts on them, so that K keeps its 24 rows.
 pub fn isoparametric(
     material: &Material,
     corners: &[Vector3<f64>; 8],
+    element: Element,
 ) -> Option<(ElementStiffness, [f64; 8])> {
     let lambda = material.lame_lambda_pa();
     let shear = material.shear_modulus_pa();
     let mut k = ElementStiffness::zeros();
     let mut volumes = [0.0; 8];
+    let (mut across, mut own) = (SMatrix::<f64, 24, 9>::zeros(), SMatrix::<f64, 9, 9>::zeros());
+    let jacobian_at = |local: &[Vector3<f64>; 8]| -> Matrix3<f64> {
+        local.iter().zip(corners).map(|(g, x)| g * x.transpose()).sum()
+    };
+    let centre = jacobian_at(&gradients_at([0.0; 3], [2.0; 3]));
+    let (centre_inverse, centre_volume) = (centre.try_inverse()?, centre.determinant());
     for point in 0..8 {
         let xi = gauss_point(point);
         // Gradients on the reference cube [−1, 1]³, whose edges have the length 2.
         let local = gradients_at(xi, [2.0; 3]);
-        let jacobian: Matrix3<f64> = local.iter().zip(corners).map(|(g, x)| g * x.transpose()).sum();
+        let jacobian = jacobian_at(&local);
         let weight = jacobian.determinant();
         if weight <= 0.0 {
             return None;
         }
         let inverse = jacobian.try_inverse()?;
         let gradients = local.map(|g| inverse * g);
-        for (a, ga) in gradients.iter().enumerate() {
+        for a in 0..8 {
             let shape: f64 =
                 (0..3).map(|axis| if a >> axis & 1 == 0 { 1.0 - xi[axis] } else { 1.0 + xi[axis] }).product();
             volumes[a] += weight * shape / 8.0;
-            for (b, gb) in gradients.iter().enumerate() {
-                for i in 0..3 {
-                    for j in 0..3 {
-                        let mut value = lambda * ga[i] * gb[j] + shear * ga[j] * gb[i];
-                        if i == j {
-                            value += shear * ga.dot(gb);
-                        }
-                        k[(3 * a + i, 3 * b + j)] += weight * value;
+        }
+        add_products(&mut k, &gradients, &gradients, [lambda, shear], weight);
+        if element == Element::Incompatible {
+            let modes: [Vector3<f64>; 3] = std::array::from_fn(|axis| {
+                let mut local = Vector3::zeros();
+                local[axis] = -2.0 * xi[axis];
+                centre_inverse * local * (centre_volume / weight)
+            });
+            add_products(&mut across, &gradients, &modes, [lambda, shear], weight);
+            add_products(&mut own, &modes, &modes, [lambda, shear], weight);
+        }
+    }
+    if element == Element::Incompatible {
+        k -= across * own.try_inverse()? * across.transpose();
+    }
+    Some(((k + k.transpose()) * 0.5, volumes))
+}
+
+/// Adds weight·∫ of σ(a)·ε(b) for all functions with these gradients: σ = λ tr ε 1 + 2G ε in index form.
+fn add_products<const ROWS: usize, const COLUMNS: usize>(
+    sums: &mut SMatrix<f64, ROWS, COLUMNS>,
+    rows: &[Vector3<f64>],
+    columns: &[Vector3<f64>],
+    [lambda, shear]: [f64; 2],
+    weight: f64,
+) {
+    for (a, ga) in rows.iter().enumerate() {
+        for (b, gb) in columns.iter().enumerate() {
+            for i in 0..3 {
+                for j in 0..3 {
+                    let mut value = lambda * ga[i] * gb[j] + shear * ga[j] * gb[i];
+                    if i == j {
+                        value += shear * ga.dot(gb);
                     }
+                    sums[(3 * a + i, 3 * b + j)] += weight * value;
                 }
             }
         }
     }
-    Some(((k + k.transpose()) * 0.5, volumes))
 }
 
 /// The Jacobian at each corner of a hexahedron with these corners \[m\], over the product of the lengths of the edges that meet

@@ -60,7 +60,14 @@ pub fn assert_documented<'a>(
             let is_used =
                 |name: &&str| all.contains(name) || *name == QUANTITY && !unknown.is_disjoint(&of_export);
             section.unused.retain(|name| !is_used(name));
-            unknown.retain(|name| !section.own.contains(name));
+            // Columns of a threshold have the name of the parameter along which it is.
+            let along = |name: &str| {
+                parameters.iter().find_map(|own| name.strip_prefix(own).filter(|rest| rest.starts_with('_')))
+            };
+            let is_along = |name: &str| {
+                along(name).is_some_and(|rest| section.own.contains(format!("mu{rest}").as_str()))
+            };
+            unknown.retain(|name| !section.own.contains(name) && !is_along(name));
         }
         unknown.retain(|name| !parameters.contains(name.strip_prefix("parameter_").unwrap_or(name)));
         unknown.retain(|name| !(is_of_export && of_export.contains(name)));

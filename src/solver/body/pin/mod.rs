@@ -183,8 +183,9 @@ fn assembled(mesh: &GeneralMesh, materials: &[Material]) -> Result<(Operator, Ve
         let material = materials
             .get(element.material)
             .ok_or_else(|| SolverError::Mesh(format!("element {number} has no material")))?;
-        let (stiffness, volumes) = hexahedron::isoparametric(material, &mesh.corners_m(element))
-            .ok_or_else(|| SolverError::Mesh(format!("element {number} is inverted")))?;
+        let (stiffness, volumes) =
+            hexahedron::isoparametric(material, &mesh.corners_m(element), mesh.element())
+                .ok_or_else(|| SolverError::Mesh(format!("element {number} is inverted")))?;
         for (&node, volume) in element.nodes.iter().zip(volumes) {
             masses_kg[node] += material.density_kg_m3 * volume;
         }

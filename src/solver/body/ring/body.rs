@@ -6,7 +6,7 @@ use super::operator::{Elements, RingOperator};
 use super::response::Response;
 use super::stages::{MAX_STAGES, Stages};
 use crate::solver::material::Material;
-use crate::spec::{DiskTimeStep, Scene, TargetSurface};
+use crate::spec::{DiskTimeStep, Element, Scene, TargetSurface};
 
 /// The definition of an elastic disk.
 #[derive(Debug, Clone)]
@@ -15,6 +15,8 @@ pub struct RingDefinition {
     pub mesh: RingMesh,
     /// The material.
     pub material: Material,
+    /// The element.
+    pub element: Element,
     /// Nodes that do not move in the rotating frame.
     pub held: Vec<usize>,
     /// How the top face is interpolated.
@@ -37,7 +39,15 @@ impl RingDefinition {
             density_kg_m3: ring.density_kg_m3,
         };
         let track_radius_m = scene.disk.track_radius_m;
-        Self { mesh, material, held, target: ring.target, clock: ring.clock, track_radius_m }
+        Self {
+            element: ring.element,
+            mesh,
+            material,
+            held,
+            target: ring.target,
+            clock: ring.clock,
+            track_radius_m,
+        }
     }
 }
 
@@ -65,7 +75,7 @@ pub struct RingBody {
 
 impl UnsteppedRing {
     pub fn new(definition: RingDefinition) -> Self {
-        let elements = Elements::new(&definition.mesh, &definition.material);
+        let elements = Elements::new(&definition.mesh, &definition.material, definition.element);
         let (operator, masses_kg) = RingOperator::new(&definition.mesh, &elements);
         let most_stages = match definition.clock {
             DiskTimeStep::Own => MAX_STAGES,

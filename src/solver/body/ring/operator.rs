@@ -11,6 +11,7 @@ use super::sector::{self, SectorElement};
 use crate::solver::field::{Block, Field, Row, WIDTH, blocks_per_line};
 use crate::solver::material::Material;
 use crate::solver::simd::dispatch;
+use crate::spec::Element;
 use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// The elements of every distinct sector angle.
@@ -23,7 +24,7 @@ pub(super) struct Elements {
 }
 
 impl Elements {
-    pub fn new(mesh: &RingMesh, material: &Material) -> Self {
+    pub fn new(mesh: &RingMesh, material: &Material, kind: Element) -> Self {
         let mut angles_rad: Vec<f64> = Vec::new();
         for &angle in mesh.sectors_rad() {
             if !angles_rad.contains(&angle) {
@@ -35,7 +36,7 @@ impl Elements {
         let mut all = Vec::new();
         for &angle in &angles_rad {
             for k in 0..layers {
-                all.extend((0..rows).map(|i| sector::element(mesh, material, i, k, angle)));
+                all.extend((0..rows).map(|i| sector::element(mesh, material, kind, i, k, angle)));
             }
         }
         Self { angles_rad, all, layers, rows }
@@ -126,7 +127,7 @@ impl RingOperator {
 
     /// K of a mesh of one material, and the lumped masses \[kg\] of its nodes; for inspection and tests.
     pub fn of_mesh(mesh: &RingMesh, material: &Material) -> (Self, Vec<f64>) {
-        Self::new(mesh, &Elements::new(mesh, material))
+        Self::new(mesh, &Elements::new(mesh, material, Element::Full))
     }
 
     /// Class of every column. Columns of the same class have equal rows of K.

@@ -3,6 +3,7 @@
 use super::mesh::RingMesh;
 use crate::solver::body::hexahedron::{ElementStiffness, isoparametric};
 use crate::solver::material::Material;
+use crate::spec::Element;
 use nalgebra::Vector3;
 
 /// Stiffness \[N/m\] and masses of one element, which all sectors of the same angle share.
@@ -18,6 +19,7 @@ pub(super) struct SectorElement {
 pub(super) fn element(
     mesh: &RingMesh,
     material: &Material,
+    kind: Element,
     i: usize,
     k: usize,
     angle_rad: f64,
@@ -29,7 +31,8 @@ pub(super) fn element(
         let height = heights[k + 1 - (corner >> 2)];
         Vector3::new(radius * libm::cos(angle(corner)), radius * libm::sin(angle(corner)), height)
     });
-    let (cartesian, volumes) = isoparametric(material, &corners).expect("a sector of a ring is not inverted");
+    let (cartesian, volumes) =
+        isoparametric(material, &corners, kind).expect("a sector of a ring is not inverted");
     let mut turned = ElementStiffness::zeros();
     for a in 0..8 {
         for b in 0..8 {

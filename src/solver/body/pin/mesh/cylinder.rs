@@ -1,7 +1,7 @@
 //! The O-grid of a cylinder: a core of c × c elements, and rings of 4c elements around it.
 
 use super::{Hexahedron, MeshParts};
-use crate::spec::core_elements;
+use crate::spec::{Element, core_elements};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Distance of the core's corners from the axis over the radius. With it, elements of the core and of the rings have about the
@@ -43,6 +43,7 @@ pub fn cylinder(size_m: [f64; 3], across: usize, along: usize) -> MeshParts {
         top: face(along),
         clamped: None,
         divisions: Some([across, across, along]),
+        element: Element::Full,
     }
 }
 

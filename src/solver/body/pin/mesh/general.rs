@@ -4,6 +4,7 @@ use super::BlockMesh;
 use crate::solver::body::hexahedron::corner_jacobians;
 use crate::solver::error::SolverError;
 use crate::solver::field::Layout;
+use crate::spec::Element;
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
 
@@ -33,6 +34,8 @@ pub struct MeshParts {
     pub clamped: Option<Vec<usize>>,
     /// Number of elements in x, y and z, if the mesh has such directions.
     pub divisions: Option<[usize; 3]>,
+    /// What all elements are.
+    pub element: Element,
 }
 
 impl MeshParts {
@@ -66,6 +69,7 @@ impl MeshParts {
             top: face(nz),
             clamped: None,
             divisions: Some(mesh.elements()),
+            element: Element::Full,
         }
     }
 }
@@ -110,6 +114,7 @@ pub struct GeneralMesh {
     worst_jacobian: f64,
     divisions: Option<[usize; 3]>,
     names: Vec<u64>,
+    element: Element,
 }
 
 impl GeneralMesh {
@@ -205,6 +210,7 @@ impl GeneralMesh {
             clamped,
             worst_jacobian,
             divisions: parts.divisions,
+            element: parts.element,
             names: parts.names.clone(),
         })
     }
@@ -237,6 +243,11 @@ impl GeneralMesh {
     /// Extent \[m\] in x, y and z in the frame of the pin.
     pub fn size_m(&self) -> [f64; 3] {
         self.size_m
+    }
+
+    /// What all elements are.
+    pub fn element(&self) -> Element {
+        self.element
     }
 
     /// Number of elements in x, y and z, if the mesh has such directions.
