@@ -173,7 +173,7 @@ pub(in crate::report) fn described() -> [FileColumns; 2] {
         FileColumns::new(
             &["thresholds.csv"],
             "A line is a range in which a mode grows, along the parameter of the thresholds, whose name takes the place of `mu` if it is \
-             another one. With `--along`, the names of its columns have that parameter in place of `mu`.",
+             another one.",
             &of_range(MU),
         ),
     ]
