@@ -112,7 +112,9 @@ pub fn judge(
         StabilityMethod::Modes => {
             let point =
                 structures.with(spec, model, |structure| structure.point(model, &drive(spec), MODES))?;
-            let is_stable = point.modes.first().is_some_and(|mode| growth(mode) < 0.0);
+            // Without a mode, sliding is stable if every mode that can grow was looked for.
+            let is_known = sliding_stability(&point, false).above_band.is_known();
+            let is_stable = point.modes.first().map_or(is_known, |mode| growth(mode) < 0.0);
             let outcome = if is_stable { Outcome::Decayed } else { Outcome::Unstable };
             let mut record = record(spec, model, &point, outcome);
             record.start.clone_from(&beginning.start);

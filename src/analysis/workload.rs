@@ -2,7 +2,7 @@
 
 use super::error::{JobError, check_step, step_count};
 use crate::solver::Model;
-use crate::solver::scheme;
+use crate::solver::scheme::Bound;
 use crate::spec::{DiskKind, JobSpec, Precision, StabilityMethod, elasticity};
 use crate::stability::Structure;
 use serde::Serialize;
@@ -108,7 +108,9 @@ impl Workload {
         let shortest = pin.element_edges_m().into_iter().fold(f64::INFINITY, f64::min);
         let omega_max = LARGEST_FREQUENCY * wave_speed / shortest;
         let numerics = &spec.numerics;
-        let limit_s = scheme::time_step_limit_s(omega_max, numerics.beta2, numerics.beta_r_s);
+        let bound =
+            Bound { omega_max_rad_s: omega_max, damping_per_s: numerics.alpha_r_per_s.unwrap_or(0.0) };
+        let limit_s = bound.time_step_limit_s(numerics.beta2, numerics.beta_r_s);
         let disk = &spec.scene.disk;
         let (disk_nodes, disk_stages) = match disk.kind {
             DiskKind::Rigid => (0, 0),

@@ -10,7 +10,7 @@ use super::work::{Checkpoints, Retries, Threads, options, work_on};
 use crate::publish::value::significant;
 use crate::queue::{Clock, Location, Queue, Shard};
 use crate::report::{Calibration as Found, Nearest};
-use crate::study::{Calibration, DiscrepancyGiven, Parameter};
+use crate::study::{Calibration, DiscrepancyGiven, PARAMETERS, Parameter, nearest_name};
 use crate::sweep::{self, CalibrationData, Plan, ReportRequest};
 use serde_json::json;
 use std::path::PathBuf;
@@ -58,10 +58,12 @@ fn named_number(text: &str) -> Result<(String, f64), String> {
     let expected = || "expected NAME=VALUE with a number".to_owned();
     let (name, value) = text.split_once('=').ok_or_else(expected)?;
     let name = name.trim();
-    let value = match Parameter::find(name) {
-        Some(parameter) => parameter.number(value.trim())?,
-        None => value.trim().parse().map_err(|_| expected())?,
+    let Some(parameter) = Parameter::find(name) else {
+        let meant = nearest_name(name, PARAMETERS.iter().map(|own| own.name));
+        let question = meant.map_or_else(String::new, |own| format!("; did you mean `{own}`?"));
+        return Err(format!("{name}: no such parameter{question}"));
     };
+    let value = parameter.number(value.trim())?;
     Ok((name.to_owned(), value))
 }
 
@@ -187,7 +189,12 @@ fn as_json(found: &Found, at: Option<&(Nearest, f64)>) -> String {
 fn as_text(found: &Found, at: Option<&(Nearest, f64)>) -> String {
     let of_point = at.map(|(at, cutoff)| {
         let is_out = if at.implausibility > *cutoff { "ruled out" } else { "not ruled out" };
-        format!("The point of --at is {is_out}: it {} (cutoff {}).", at.in_words(), significant(*cutoff, 2))
+        let limit = if at.implausibility.is_infinite() {
+            String::new()
+        } else {
+            format!(" (cutoff {})", significant(*cutoff, 2))
+        };
+        format!("The point of --at is {is_out}: it {}{limit}.", at.in_words())
     });
     found.in_words().into_iter().chain(of_point).map(|sentence| sentence + "\n").collect()
 }

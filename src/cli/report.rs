@@ -137,13 +137,17 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         studies,
         data: args.data.clone(),
         bins: args.bins.number(),
-        variation: args.sensitivity.as_deref().map(sweep::study_name).transpose()?,
+        sensitivity: args.sensitivity.as_deref().map(sweep::study_name).transpose()?,
         x: x.clone(),
         by: by.clone(),
         y: y.clone(),
         span: *span,
         scale: scale.clone(),
     };
+    if args.sensitivity.is_some() && request.studies.len() + request.data.len() < 2 {
+        let message = "--sensitivity: expected something to compare with: --data FILE, or a second study";
+        return Err(CliError::Usage(message.to_owned()));
+    }
     let folder = OutFolder { folder: args.out.folder.clone() }.of(&request.folder_name());
     sweep::with_queue(db, Purpose::Read, async |queue| {
         let code;

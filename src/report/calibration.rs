@@ -86,6 +86,8 @@ pub struct Nearest {
     pub of: &'static str,
     /// The parameters of the measured point.
     pub place: Vec<(String, Value)>,
+    /// Whether the machine squeals there, if that is known.
+    pub machine_squeals: Option<bool>,
 }
 
 /// A measured value, and what the simulation gives there.
@@ -164,7 +166,10 @@ impl Nearest {
         let place: Vec<String> = self.place.iter().map(|(name, value)| assignment(name, value)).collect();
         let at = if place.is_empty() { String::new() } else { format!(" at {}", place.join(", ")) };
         if self.implausibility.is_infinite() {
-            return format!("squeals{at} where the machine does not, or the other way round");
+            return match self.machine_squeals {
+                Some(true) => format!("slides steadily{at}, where the machine squeals"),
+                _ => format!("squeals{at}, where the machine does not"),
+            };
         }
         let distance = value::significant(self.implausibility, 2);
         format!("is {distance} standard deviations away from {}{at}", self.of)
@@ -316,7 +321,7 @@ impl Calibration {
             )
         };
         let is_out = if best.is_ruled_out && self.nearest.is_none() {
-            " It is ruled out itself: no run lies in the region yet, and more points would have one there."
+            " That run is ruled out, too: no run lies in the region yet. More points would add one."
         } else {
             ""
         };

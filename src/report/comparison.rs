@@ -42,7 +42,8 @@ pub(super) struct Comparison {
 /// What the parameters of a study do to each quantity.
 pub(super) struct Movers {
     pub study: String,
-    pub of: Vec<(&'static Scalar, Vec<Mover>)>,
+    /// The movers of each quantity, or why there are none.
+    pub of: Vec<(&'static Scalar, Result<Vec<Mover>, &'static str>)>,
 }
 
 /// One quantity of a point, and of the reference at the same place.
@@ -114,14 +115,24 @@ impl Comparison {
         for (index, source) in layout.sources.iter().enumerate().skip(1) {
             let mut matches = Matches::default();
             let mut found = 0;
+            let (compared_before, mut says_squeal) = (comparison.compared_squeals, false);
             for group in &layout.groups {
                 let curves = reference_curves(layout, group, &x_axis);
                 found += curves.values().map(Vec::len).sum::<usize>();
                 for job in group.jobs.iter().filter(|job| layout.series[job.series].source == index) {
+                    says_squeal |= job.row.is_measured() && job.row.squeals().is_some();
                     comparison.compare(layout, group, job, &curves, &x_axis, &scalars, &mut matches);
                 }
             }
-            comparison.unmatched.extend(matches.none_in_words(source.name, layout.sources[0].name));
+            let none = matches.none_in_words(source.name, layout.sources[0].name);
+            if none.is_none() && says_squeal && comparison.compared_squeals == compared_before {
+                comparison.unmatched.push(format!(
+                    "whether {} squeals is compared at none of its points: they lie beyond the jobs of {}, or between one that squeals and one \
+                     that does not",
+                    source.name, layout.sources[0].name
+                ));
+            }
+            comparison.unmatched.extend(none);
             comparison.notes.extend(matches.in_words(
                 source.name,
                 &layout.sources[0],
@@ -141,11 +152,8 @@ impl Comparison {
     /// difference.
     pub fn explain_by(&mut self, study: Option<(&str, &[JobRow])>) {
         let Some((name, rows)) = study else { return };
-        let axis = self.names.last();
-        let of = |scalar: &'static Scalar| {
-            let all = movers(rows, scalar).into_iter().filter(|own| Some(&own.parameter) != axis);
-            (scalar, all.collect())
-        };
+        let axis = self.names.last().map(String::as_str);
+        let of = |scalar: &'static Scalar| (scalar, movers(rows, scalar, axis));
         let mut scalars: Vec<&'static Scalar> = Vec::new();
         for found in &self.differences {
             if !scalars.contains(&found.scalar) {

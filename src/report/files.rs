@@ -164,7 +164,7 @@ fn compared(
         );
         comparison.notes.extend((part < all).then_some(note));
     }
-    comparison.explain_by(report.variation);
+    comparison.explain_by(report.sensitivity);
     Some(comparison)
 }
 

@@ -35,7 +35,7 @@ pub struct Report<'a> {
     pub findings: Option<&'a Findings>,
     /// The jobs of a study that varies what could bring the first study nearer to the others, and its name; none if there is no such
     /// study.
-    pub variation: Option<(&'a str, &'a [JobRow])>,
+    pub sensitivity: Option<(&'a str, &'a [JobRow])>,
     /// When it is written, in milliseconds since 1970-01-01 UTC.
     pub written_ms: i64,
     /// After how many seconds the page reloads itself; none for a page that is not going to be written again.

@@ -1,10 +1,9 @@
 //! What a comparison says first: how far the simulation is from what was measured, and in which direction.
 
 use super::comparison::{Comparison, Difference, Movers};
-use super::parameters::{in_words, symbol};
+use super::parameters::in_words;
 use super::sensitivity::Mover;
 use crate::publish::value::{count, fixed, significant_number};
-use crate::units::name_and_unit;
 
 /// A parameter that moves a quantity by less than this share of a difference hardly explains it.
 const MOVES: f64 = 0.1;
@@ -38,7 +37,7 @@ impl Comparison {
                 1 => "the one point".to_owned(),
                 several => format!("all {}", count(several as u64, "point")),
             };
-            format!("squeal: the same at {points} where both say whether it squeals.")
+            format!("squeal: {} and the others say the same at {points} where both say it.", self.reference)
         });
         of_quantities.chain(of_squeal).collect()
     }
@@ -98,33 +97,39 @@ impl Comparison {
         }
         let Movers { study, of } = self.movers.as_ref()?;
         let (_, movers) = of.iter().find(|(scalar, _)| *scalar == first.scalar)?;
+        let movers = match movers {
+            Ok(movers) => movers,
+            Err(why) => return Some(format!(" What could move it is not known: {study} {why}.")),
+        };
         let least = MOVES * deviation.abs();
         let (strong, weak): (Vec<_>, Vec<_>) = movers.iter().partition(|own| own.change.abs() >= least);
-        let way = if deviation > 0.0 { "lower" } else { "raise" };
         let one = |own: &&Mover| {
             let is_smaller = (own.change > 0.0) == (deviation > 0.0);
             let [from, to] = if is_smaller { [own.ends[1], own.ends[0]] } else { own.ends };
-            let name = symbol(&own.parameter).unwrap_or(name_and_unit(&own.parameter).0);
             let [from, to] = [from, to].map(|x| in_words(&own.parameter, &significant_number(x, 4)));
             let size = if is_smaller { "smaller" } else { "larger" };
-            format!("a {size} {name} ({from} to {to}: {})", signed(-own.change.abs().copysign(deviation)))
+            let change = signed(-own.change.abs().copysign(deviation));
+            format!("a {size} {} ({from} to {to}: {change})", own.parameter)
         };
-        let names = |of: &[&Mover]| {
-            let names: Vec<&str> = of
-                .iter()
-                .map(|own| symbol(&own.parameter).unwrap_or(name_and_unit(&own.parameter).0))
-                .collect();
-            names.join(", ")
+        let moves = if deviation > 0.0 { "lowers" } else { "raises" };
+        let names = weak.iter().map(|own| own.parameter.as_str()).collect::<Vec<_>>().join(" and ");
+        let hardly = match weak.len() {
+            0 => String::new(),
+            1 => format!("; {names} hardly moves it"),
+            _ => format!("; {names} hardly move it"),
         };
-        let weak = match weak.as_slice() {
-            [] => String::new(),
-            some => format!(" Hardly: {}.", names(some)),
-        };
-        Some(if strong.is_empty() {
-            format!(" Nothing that {study} varies moves it by a tenth of that.")
-        } else {
-            let strong: Vec<String> = strong.iter().map(one).collect();
-            format!(" What could {way} it, by {study}: {}.{weak}", strong.join(", "))
+        Some(match strong.as_slice() {
+            [] => format!(" Nothing that {study} varies moves it by a tenth of that."),
+            [only] => format!(" In {study}, {} {moves} it{hardly}.", one(only)),
+            [first, others @ ..] => {
+                let others: Vec<String> = others.iter().map(one).collect();
+                let verb = if others.len() == 1 { "does" } else { "do" };
+                format!(
+                    " In {study}, {} {moves} it, and so {verb} {}{hardly}.",
+                    one(first),
+                    others.join(" and ")
+                )
+            }
         })
     }
 }

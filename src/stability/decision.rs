@@ -49,7 +49,7 @@ pub enum Decision {
 /// decayed.
 pub fn verdict(
     point: &SlidingPoint,
-    [mass_damping_per_s, damping_s]: [f64; 2],
+    [alpha_r_per_s, damping_s]: [f64; 2],
     coarser_decayed: bool,
 ) -> Decision {
     let judged_hz = JUDGED * point.band_hz;
@@ -70,7 +70,7 @@ pub fn verdict(
         }
         if value.im > 0.0 {
             let growth_per_s = value.re + if is_judged { error } else { 0.0 };
-            let undamped_per_s = growth_per_s + mass_damping_per_s / 2.0;
+            let undamped_per_s = growth_per_s + alpha_r_per_s / 2.0;
             gain = gain.max(undamped_per_s / value.im + damping_s * value.im / 2.0);
         }
     }

@@ -149,7 +149,7 @@ impl Extension {
             stiffness,
             sideways,
             damping_s: before.damping_s,
-            mass_damping_per_s: before.mass_damping_per_s,
+            alpha_r_per_s: before.alpha_r_per_s,
         }
     }
 

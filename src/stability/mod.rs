@@ -195,7 +195,7 @@ impl ReducedStructure {
                 beta_r_s: scheme.beta_r_s,
             },
             damping_s: scheme.beta_r_s + (scheme.beta2 - 0.5) * scheme.time_step_s,
-            mass_damping_per_s: scheme.alpha_r_per_s,
+            alpha_r_per_s: scheme.alpha_r_per_s,
         };
         let found = point.modes(&mut Elasticity::new(model, &self.space), modes, accuracy);
         let unit = &friction.equilibrium;

@@ -20,7 +20,7 @@ pub struct Pencil {
     /// β \[s\].
     pub damping_s: f64,
     /// α \[1/s\].
-    pub mass_damping_per_s: f64,
+    pub alpha_r_per_s: f64,
 }
 
 /// The velocity that a damper of a run takes.
@@ -81,7 +81,7 @@ impl Pencil {
             (false, false) => {
                 let (i, j) = (i - n, j - n);
                 let own = self.damping_s * self.stiffness[(i, j)] + self.sideways[(i, j)];
-                let own = if i == j { own + self.mass_damping_per_s } else { own };
+                let own = if i == j { own + self.alpha_r_per_s } else { own };
                 -self.viscous.iter().fold(own, |sum, (_, matrix)| sum + matrix[(i, j)]) / scale
             }
         });
@@ -130,7 +130,7 @@ impl Pencil {
     /// The factors of P and those of its derivative.
     fn factors(&self, clock: Clock, value: c64) -> [Factors; 2] {
         let one = c64::new(1.0, 0.0);
-        let alpha = self.mass_damping_per_s;
+        let alpha = self.alpha_r_per_s;
         match clock {
             Clock::Continuous => [
                 Factors {

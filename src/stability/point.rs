@@ -128,7 +128,7 @@ pub struct Point<'a> {
     pub viscous: Vec<Dashpots>,
     pub damping_s: f64,
     /// α \[1/s\].
-    pub mass_damping_per_s: f64,
+    pub alpha_r_per_s: f64,
     /// How time passes in a run.
     pub steps: Clock,
 }
@@ -215,7 +215,7 @@ impl Point<'_> {
             sideways,
             viscous: viscous.collect(),
             damping_s: self.damping_s,
-            mass_damping_per_s: self.mass_damping_per_s,
+            alpha_r_per_s: self.alpha_r_per_s,
         };
         let mut found = pencil.eigenvalues();
         let candidates = if accuracy.aim == Aim::Signs { count } else { count.max(CANDIDATES) };
@@ -241,7 +241,7 @@ impl Point<'_> {
             sideways_n_s_m: &sideways_of_nodes,
             viscous: &self.viscous,
             damping_s: self.damping_s,
-            mass_damping_per_s: self.mass_damping_per_s,
+            alpha_r_per_s: self.alpha_r_per_s,
         };
         let mut modes: Vec<Candidate> = Vec::new();
         for group in found.chunks(PAIRS) {

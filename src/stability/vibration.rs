@@ -30,7 +30,7 @@ pub struct Vibration<'a> {
     /// β \[s\].
     pub damping_s: f64,
     /// α \[1/s\].
-    pub mass_damping_per_s: f64,
+    pub alpha_r_per_s: f64,
 }
 
 /// An approximate eigenvector in the full space, and its residual.
@@ -72,11 +72,7 @@ impl Vibration<'_> {
         let mut force = space.zeros();
         add_complex(&mut force, &elastic, &product);
         let inertia = space.mass_times(q);
-        add_complex(
-            &mut force,
-            &values.map(|value| value * value + value * self.mass_damping_per_s),
-            &inertia,
-        );
+        add_complex(&mut force, &values.map(|value| value * value + value * self.alpha_r_per_s), &inertia);
         for (i, (slave, _)) in nodes() {
             let [dx, dy] = slave.forward;
             let mu = self.friction.mu_of(i);

@@ -226,7 +226,6 @@ fn is_axis(parameter: &Parameter, value: &Value) -> bool {
     }
 }
 
-/// Reads the text of a value: counts as `12x15x10`, then JSON, otherwise a string.
 impl Parameter {
     /// A number of this parameter as a user writes it: with another unit of the same kind, or in that of the name.
     ///
@@ -239,6 +238,7 @@ impl Parameter {
     }
 }
 
+/// Reads the text of a value: counts as `12x15x10`, then JSON, otherwise a string.
 fn parse_value(parameter: &Parameter, text: &str) -> Value {
     if matches!(parameter.kind, Kind::Counts) {
         let counts: Result<Vec<u64>, _> = text.split(['x', '×']).map(|n| n.trim().parse()).collect();

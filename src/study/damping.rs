@@ -1,7 +1,7 @@
 //! Damping as people know it: a ratio at a frequency, or the β₂ of a scheme at its time step.
 
 use super::json::present;
-use crate::spec::{FieldError, JobSpec, Limit, Numerics};
+use crate::spec::{DiskKind, FieldError, JobSpec, Limit, Numerics};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -76,6 +76,11 @@ impl Damping {
     pub(super) fn fill(self, spec: &mut JobSpec, gives: impl Fn(&str) -> bool) -> Result<(), FieldError> {
         let damps_pin = self != Self { holder_ratio: self.holder_ratio, ..Self::default() };
         let Numerics { alpha_r_per_s, beta_r_s, .. } = spec.numerics;
+        let is_elastic = spec.scene.disk.kind == DiskKind::Elastic;
+        if let Some(second_hz) = self.second_frequency_hz.filter(|_| is_elastic) {
+            let expected = "no second frequency with an elastic disk, which would have no damping in proportion to its mass; leave it out";
+            return Err(refused("damping.second_frequency_hz", second_hz, expected));
+        }
         if let Some(second_hz) = self.second_frequency_hz.filter(|_| gives("alpha_r_per_s")) {
             let expected = "either this or numerics.alpha_r_per_s, not both: each gives α_R";
             return Err(refused("damping.second_frequency_hz", second_hz, expected));
@@ -130,6 +135,12 @@ impl Damping {
         };
         if let Some(second_hz) = self.second_frequency_hz.filter(|own| Some(*own) == self.frequency_hz) {
             let expected = "another frequency than damping.frequency_hz, or only one of the two";
+            return Err(refused("damping.second_frequency_hz", second_hz, expected));
+        }
+        let is_of_scheme = self.beta2.is_some() || self.at_time_step_s.is_some();
+        if let Some(second_hz) = self.second_frequency_hz.filter(|_| is_of_scheme) {
+            let expected =
+                "no second frequency beside beta2 and at_time_step_s, which have none; leave it out";
             return Err(refused("damping.second_frequency_hz", second_hz, expected));
         }
         if let Some(second_hz) = self.second_frequency_hz.filter(|_| self.frequency_hz.is_none()) {

@@ -19,6 +19,17 @@ pub(super) fn read(
     bins: Option<usize>,
 ) -> Result<MeasuredFile, MeasuredError> {
     let points = measured::read(path, source_name)?;
+    if bins.is_some() && points.has_thresholds {
+        let message =
+            "it has thresholds, which are no samples; expected them in a file of their own, without --bins"
+                .to_owned();
+        return Err(MeasuredError::Content {
+            file: path.display().to_string(),
+            line: 1,
+            column: None,
+            message,
+        });
+    }
     match bins {
         None => Ok(points),
         Some(bins) => averaged(points, bins).ok_or_else(|| {
@@ -58,7 +69,7 @@ pub(super) fn averaged(file: MeasuredFile, bins: usize) -> Option<MeasuredFile> 
         (Some(others), Some(words)) => Some(format!("{others}; {words}")),
         (others, words) => others.or(words),
     };
-    Some(MeasuredFile { parameters: file.parameters, rows, left_out })
+    Some(MeasuredFile { parameters: file.parameters, rows, left_out, has_thresholds: false })
 }
 
 /// The parameter with the most values, if it has two that are numbers.

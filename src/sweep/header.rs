@@ -36,6 +36,14 @@ fn meant_name<'a>(name: &str, known: &'a [String]) -> Option<&'a str> {
 
 /// The question whether a header means one of the `known` names. Returns `None` if it is like none of them.
 pub(super) fn suggestion(name: &str, known: &[String]) -> Option<String> {
+    // The error stands before the unit: `omega_rpm_error` is `omega_error_rpm`.
+    let of_error = name.strip_suffix("_error").map(|own| {
+        let stem = name_and_unit(own).0;
+        format!("{stem}_error{}", &own[stem.len()..])
+    });
+    if let Some(meant) = of_error.filter(|own| known.contains(own) && own != name) {
+        return Some(format!("did you mean `{meant}`?"));
+    }
     let meant = meant_name(name, known)?;
     let unit = name_and_unit(meant).1;
     let help = if meant == "omega_rpm" && misspelt_name(without_unit(name), [SPEED]) == Some(SPEED) {

@@ -46,6 +46,8 @@ pub(super) struct MeasuredFile {
     pub rows: Vec<JobRow>,
     /// What was left out of the file, in a sentence; none if nothing was.
     pub left_out: Option<String>,
+    /// Whether the file has a column for errors of thresholds.
+    pub has_thresholds: bool,
 }
 
 /// Columns that are not read: names and states, as an export has them, and remarks.
@@ -158,7 +160,8 @@ pub(super) fn parse(text: &str, file: &str, source_name: &str) -> Result<Measure
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
         format!("{file}: {columns} {names}{more} {are} no parameter and no result, and left out")
     });
-    Ok(MeasuredFile { parameters: parameters.collect(), rows, left_out })
+    let has_thresholds = columns.iter().any(|column| matches!(column, Column::ParameterError(_)));
+    Ok(MeasuredFile { parameters: parameters.collect(), rows, left_out, has_thresholds })
 }
 
 /// Most columns that a message names.
@@ -192,8 +195,9 @@ fn exported_error(name: &str) -> Option<&'static Scalar> {
 fn known_names() -> Vec<String> {
     let parameters = PARAMETERS.iter().map(|parameter| parameter.name.to_owned());
     let own = IGNORED.iter().chain(&[SQUEALS, STATUS]).map(|name| (*name).to_owned());
+    let thresholds = PARAMETERS.iter().filter(|own| own.is_number()).map(|own| error_column(own.name));
     let results = SCALARS.iter().flat_map(|scalar| [scalar.name.to_owned(), error_column(scalar.name)]);
-    parameters.chain(results).chain(own).collect()
+    parameters.chain(results).chain(thresholds).chain(own).collect()
 }
 
 fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, MeasuredError> {
@@ -229,7 +233,8 @@ fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, Measured
         } else if let Some(meant) = suggestion(name, &known) {
             // Without it, a misspelt result would be missing in silence.
             let expected = "expected omega_rpm, mu or another parameter, a result such as mu_star or frequency_hz, its error \
-                            such as mu_star_error or frequency_error_hz, squeals, or note";
+                            such as mu_star_error or frequency_error_hz, squeals, the error of a threshold such as omega_error_rpm, or \
+                            note";
             let message = format!("no such column; {meant}\n  help: {expected}");
             return Err(place.error(Some(name), message));
         } else {
@@ -314,7 +319,7 @@ fn row(
             }
         }
     }
-    for (name, error) in errors {
+    for &(name, error) in &errors {
         if let Some(value) = values.iter_mut().find(|value| value.name == name) {
             value.error = Some(error);
         }
@@ -332,7 +337,10 @@ fn row(
         inputs: Vec::new(),
     };
     let refused = |message| place.error(Some(SQUEALS), message);
-    if let Some(sides) = threshold.sides(&parameters, !values.is_empty()).map_err(refused)? {
+    if let Some(sides) = threshold
+        .sides(&parameters, !values.is_empty() || !errors.is_empty() || squeals.is_some())
+        .map_err(refused)?
+    {
         return Ok(sides.map(|(parameters, squeals)| point(parameters, Vec::new(), Some(squeals))).into());
     }
     let has_result = !values.is_empty() || squeals.is_some();

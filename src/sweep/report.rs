@@ -56,9 +56,9 @@ pub async fn write_content(
     folder: &Path,
     refresh_s: Option<u32>,
 ) -> Result<Written, SweepError> {
-    let ReportContent { title, studies, rows, view, variation, .. } = content;
-    let variation = variation.as_ref().map(|(name, rows)| (name.as_str(), rows.as_slice()));
-    write_viewed(queue, title, studies, rows, view, variation, folder, refresh_s).await
+    let ReportContent { title, studies, rows, view, sensitivity, .. } = content;
+    let sensitivity = sensitivity.as_ref().map(|(name, rows)| (name.as_str(), rows.as_slice()));
+    write_viewed(queue, title, studies, rows, view, sensitivity, folder, refresh_s).await
 }
 
 #[expect(clippy::too_many_arguments, reason = "the parts of a report")]
@@ -68,7 +68,7 @@ async fn write_viewed(
     studies: &[String],
     rows: &[JobRow],
     view: &View,
-    variation: Option<(&str, &[JobRow])>,
+    sensitivity: Option<(&str, &[JobRow])>,
     folder: &Path,
     refresh_s: Option<u32>,
 ) -> Result<Written, SweepError> {
@@ -86,7 +86,7 @@ async fn write_viewed(
         stability: &stability,
         along: &along,
         findings,
-        variation,
+        sensitivity,
         refresh_s,
         ..surroundings.report()
     };

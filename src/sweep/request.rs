@@ -29,7 +29,7 @@ pub struct ReportRequest {
     /// The number of bins in which the rows of these files are averaged; none for the rows themselves.
     pub bins: Option<usize>,
     /// The study that shows what could move the first one nearer to the others.
-    pub variation: Option<String>,
+    pub sensitivity: Option<String>,
     /// The parameter along the axis; the study's own choice if absent.
     pub x: Option<String>,
     /// The parameter of the curves; the study's own choice if absent.
@@ -54,7 +54,7 @@ pub struct ReportContent {
     /// How they are laid out.
     pub view: View,
     /// The study that shows what could move the first one nearer to the others, and its jobs.
-    pub variation: Option<(String, Vec<JobRow>)>,
+    pub sensitivity: Option<(String, Vec<JobRow>)>,
     /// What was left out of files of measured points, in sentences.
     pub left_out: Vec<String>,
 }
@@ -285,12 +285,12 @@ pub async fn read_report(queue: &mut Queue, request: &ReportRequest) -> Result<R
         rows.extend(completed(file, &rows[..jobs], &names));
     }
     let view = request.view(&studies, &rows)?;
-    let variation = match &request.variation {
+    let sensitivity = match &request.sensitivity {
         Some(name) => Some((name.clone(), read_rows(queue, name).await?)),
         None => None,
     };
     let studies = request.studies.clone();
-    Ok(ReportContent { title: request.title(), studies, rows, view, variation, left_out })
+    Ok(ReportContent { title: request.title(), studies, rows, view, sensitivity, left_out })
 }
 
 /// Gives the rows of a study the parameters that its grid does not have, with the values of the jobs.

@@ -46,7 +46,7 @@ impl Threshold {
             return Err(format!("a threshold along {along} needs a value of {along}"));
         };
         let low = value - CERTAIN * error;
-        if low <= 0.0 {
+        if low <= 0.0 && value > 0.0 {
             return Err(format!(
                 "{along} = {value} with an error of {error} says nothing; expected an error below half of the value"
             ));

@@ -159,3 +159,25 @@ fn a_cylinder_that_squeals_high_is_unstable() {
         "{stability:?}"
     );
 }
+
+/// Protects: where damping wins below the band that was searched, the band stays as it is, and the decaying modes in it are found: a cylinder
+/// in a collet at little friction is stable, and says what decays. A band that ended where damping wins had no mode, and counted as unstable.
+#[test]
+fn damping_that_wins_early_hides_no_modes() {
+    let mut spec = JobSpec { stability: StabilityMethod::Modes, ..JobSpec::default() };
+    let pin = &mut spec.scene.pin;
+    (pin.shape, pin.diameter_m, pin.size_m, pin.elements) =
+        (Shape::Cylinder, Some(0.008), [0.008, 0.008, 0.018], [4, 4, 6]);
+    (pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3) = (2.8e9, 0.35, 1410.0);
+    (spec.scene.clamp.side, spec.scene.clamp.width_m) = (ClampSide::Collet, 0.006);
+    (spec.scene.disk.omega_rpm, spec.scene.disk.track_radius_m) = (500.0, 0.06);
+    spec.numerics.beta_r_s = 8.0e-7;
+    for mu in [0.001, 0.01] {
+        spec.scene.contact.mu = mu;
+        let record = solve(&spec, &mut Unobserved).unwrap();
+        let stability = record.stability.as_ref().unwrap();
+        assert_eq!(record.outcome, Outcome::Decayed, "μ = {mu}");
+        assert_eq!(stability.above_band, AboveBand::Damped, "μ = {mu}");
+        assert!(stability.modes.len() >= 4, "μ = {mu}: {:?}", stability.modes);
+    }
+}

@@ -122,7 +122,8 @@ fn unusable_data_are_refused() {
     folder.write("data.csv", "omega_rpm,mu_star,mu_star_error\n5,0.3,0.01\n");
     for (options, expected) in [
         ("--free nu", "did you mean `poisson_ratio`?"),
-        ("--at mu=0.3,nu=1", "--at: expected one value for each of mu"),
+        ("--at mu=0.3,poisson_ratio=0.2", "--at: expected one value for each of mu"),
+        ("--at mu=0.3,nu=0.2", "nu: no such parameter; did you mean `poisson_ratio`?"),
         ("--set omega_rpm=7", "--set omega_rpm: the measured points have this parameter"),
         ("--at mu=0.7", "--at mu=0.7: expected a value from 0.3 to 0.6, the range of the study"),
         ("--set mu=0.4", "--set mu: it is free"),

@@ -101,46 +101,66 @@ fn the_verdict_comes_first() {
 }
 
 /// Protects: the verdict says which parameters of another study could move the quantity the right way, from which value to which and by how
-/// much: the mean over pairs of jobs that differ in one parameter alone. What moves it by less than a tenth of the difference is named as such,
-/// and the speed along the axis explains nothing.
+/// much. What moves it by less than a tenth of the difference is named as such, and the speed along the axis explains nothing. Where that study
+/// says nothing, the verdict says why: it has no jobs, varies the axis alone, or has values that follow no plane.
 #[test]
 fn a_verdict_names_what_could_move_it() {
     let mut rows = study("simulated", 0.3);
     rows.extend([measured(1.0, 0.4, 0.25, Some(0.001)), measured(10.0, 0.4, 0.26, Some(0.001))]);
     // Its mean is 0.84. It falls by 0.04 with E, rises by 0.02 with the load, and hardly depends on the width of the clamp.
-    let mut variation = Vec::new();
-    for (omega, modulus, load, width) in (0..16)
-        .map(|i| ([1.0, 10.0][i % 2], [1e9, 2e9][i / 2 % 2], [20.0, 30.0][i / 4 % 2], [0.001, 0.002][i / 8]))
-    {
-        let mu_star = 0.3 + 0.1 * omega - 0.04e-9 * modulus + 0.002 * load + 0.5 * width;
-        let mut job = row(omega, 0.4, periodic(mu_star));
-        let grid =
-            [("omega_rpm", omega), ("young_modulus_pa", modulus), ("load_n", load), ("clamp_width_m", width)];
-        let grid = grid.map(|(name, x)| (name.to_owned(), x.into())).into();
-        job.parameters = Parameters::new(f64::NAN, 0.4, grid);
-        variation.push(job);
-    }
+    let plane = |omega: f64, modulus: f64, load: f64, width: f64| {
+        0.3 + 0.1 * omega - 0.04e-9 * modulus + 0.002 * load + 0.5 * width
+    };
+    let variation = |mu_star: &dyn Fn(f64, f64, f64, f64) -> f64| -> Vec<JobRow> {
+        let job = |i: usize| {
+            let (omega, modulus) = ([1.0, 10.0][i % 2], [1e9, 2e9][i / 2 % 2]);
+            let (load, width) = ([20.0, 30.0][i / 4 % 2], [0.001, 0.002][i / 8]);
+            let mut job = row(omega, 0.4, periodic(mu_star(omega, modulus, load, width)));
+            let grid = [
+                ("omega_rpm", omega),
+                ("young_modulus_pa", modulus),
+                ("load_n", load),
+                ("clamp_width_m", width),
+            ];
+            let grid = grid.map(|(name, x)| (name.to_owned(), x.into())).into();
+            job.parameters = Parameters::new(f64::NAN, 0.4, grid);
+            job
+        };
+        (0..16).map(job).collect()
+    };
     let verdict = |variation: &[JobRow]| {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let report = Report { variation: Some(("scan", variation)), ..report(&rows) };
+        let report = Report { sensitivity: Some(("scan", variation)), ..report(&rows) };
         write_compared(&report, folder.path()).expect("the report is written").verdicts.remove(0)
     };
+    let all = variation(&plane);
     assert_eq!(
-        verdict(&variation),
-        "μ*: simulated is 20 % above rig at all 2 points (+19 % to +20 %); within two standard errors at 0 of 2. What could lower it, by \
-         scan: a larger young_modulus (1 GPa to 2 GPa: −4.8 %), a smaller load (30 N to 20 N: −2.4 %). Hardly: clamp_width."
+        verdict(&all),
+        "μ*: simulated is 20 % above rig at all 2 points (+19 % to +20 %); within two standard errors at 0 of 2. In scan, a larger \
+         young_modulus_pa (1 GPa to 2 GPa: −4.8 %) lowers it, and so does a smaller load_n (30 N to 20 N: −2.4 %); clamp_width_m hardly \
+         moves it."
     );
-    let of_speed: Vec<JobRow> = variation
-        .into_iter()
-        .filter(|job| job.parameters.get("young_modulus_pa") == Some(&1e9.into()))
-        .collect();
-    let weak: Vec<JobRow> =
-        of_speed.into_iter().filter(|job| job.parameters.get("load_n") == Some(&20.0.into())).collect();
-    assert!(
-        verdict(&weak).ends_with("Nothing that scan varies moves it by a tenth of that."),
-        "{}",
-        verdict(&weak)
-    );
+    // A sample that is no grid gives the same plane.
+    let (some, _) = all.split_at(13);
+    assert!(verdict(some).contains("a larger young_modulus_pa (1 GPa to 2 GPa: −"), "{}", verdict(some));
+    let of =
+        |name: &'static str, value: f64| move |job: &JobRow| job.parameters.get(name) == Some(&value.into());
+    let mut of_width = all.clone();
+    of_width.retain(|job| of("young_modulus_pa", 1e9)(job) && of("load_n", 20.0)(job));
+    let mut of_axis = of_width.clone();
+    of_axis.retain(of("clamp_width_m", 0.001));
+    let bent = variation(&|_, modulus, load, _| 0.3 + 1e-10 * (modulus - 1.5e9) * (load - 25.0));
+    for (jobs, expected) in [
+        (&of_width, " Nothing that scan varies moves it by a tenth of that."),
+        (&Vec::new(), " What could move it is not known: scan has no finished job with this quantity."),
+        (&of_axis, " What could move it is not known: scan varies no parameter but that along the axis."),
+        (
+            &bent,
+            " What could move it is not known: scan has values that follow no plane over its parameters.",
+        ),
+    ] {
+        assert!(verdict(jobs).ends_with(expected), "{expected}: {}", verdict(jobs));
+    }
 }
 
 /// Protects: the export beside a comparison has what was measured, with its error, under the names of what was computed.

@@ -60,6 +60,14 @@ fn the_ratio_holds_at_two_frequencies() {
             r#"{ "damping": { "ratio": 0.1, "frequency_hz": 5e3, "second_frequency_hz": 9e3 }, "numerics": { "alpha_r_per_s": 3 } }"#,
             "each gives α_R",
         ),
+        (
+            r#"{ "damping": { "beta2": 1, "at_time_step_s": 5e-8, "second_frequency_hz": 5e3 } }"#,
+            "no second frequency beside beta2",
+        ),
+        (
+            r#"{ "scene": { "disk": { "kind": "elastic" } }, "damping": { "ratio": 0.1, "frequency_hz": 5e3, "second_frequency_hz": 9e3 } }"#,
+            "damping.second_frequency_hz = 9000",
+        ),
         (r#"{ "numerics": { "alpha_r_per_s": -3 } }"#, "a damping rate >= 0 1/s"),
         (
             r#"{ "scene": { "disk": { "kind": "elastic" } }, "numerics": { "alpha_r_per_s": 3 } }"#,

@@ -249,13 +249,14 @@ def compare(
     studies: Names,
     data: str | os.PathLike[str] | pandas.DataFrame | None = None,
     *,
+    sensitivity: str | None = None,
     db: Database = None,
     out: str | os.PathLike[str] | None = None,
 ) -> pandas.DataFrame:
     """Compares stored studies with each other and with measured points, and returns a row for each difference from the first study.
 
     `data` is a CSV file or a frame with the same columns, as for `calibrate`. The sentences of the verdict are in `attrs["verdict"]`. If no
-    point could be compared, that is an InputWarning.
+    point could be compared, that is an InputWarning. `sensitivity` names a stored study that varies what could explain the differences.
 
     Raises ValueError if there is only one study and no data, and Error if the database has no such study, or if the data cannot be used.
     """
@@ -264,7 +265,8 @@ def compare(
         raise ValueError("one study has nothing to be compared with; give a second study or data")
     with _data_file(data) as path:
         measured = [] if path is None else ["--data", path]
-        table, _, messages = _reported(["report", *measured], names, "differences.csv", db, out)
+        varied = [] if sensitivity is None else ["--sensitivity", sensitivity]
+        table, _, messages = _reported(["report", *measured, *varied], names, "differences.csv", db, out)
     others = ("warning: ", "  ", "report written to ")
     table.attrs["verdict"] = [line for line in messages.splitlines() if line and not line.startswith(others)]
     doubts = doubts_of(messages) + ([] if len(table) else ["no point of the first study could be compared"])

@@ -3,7 +3,7 @@
 use super::parameters;
 use crate::report::row::{JobRow, RowState};
 use crate::report::scalar::Scalar;
-use indexmap::IndexMap;
+use nalgebra::{DMatrix, DVector};
 
 /// What a parameter does to a quantity between the ends of its values.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,47 +15,67 @@ pub(in crate::report) struct Mover {
     pub change: f64,
 }
 
-/// What each parameter that is a number does to a quantity, the largest change first: the mean over pairs of points that differ in it alone
-/// and have its ends. Where there are no such pairs, it is the slope of a straight line through all points, times the distance of the ends.
-pub(in crate::report) fn movers(rows: &[JobRow], scalar: &Scalar) -> Vec<Mover> {
-    let is_done = |row: &&JobRow| matches!(row.state, RowState::Done(_)) && scalar.value(row).is_some();
-    let rows: Vec<&JobRow> = rows.iter().filter(is_done).collect();
-    let y: Vec<f64> = rows.iter().filter_map(|row| scalar.value(row)).collect();
-    let mean = y.iter().sum::<f64>() / y.len() as f64;
-    let all = parameters(&rows);
-    let mover = |own: &super::Parameter| {
-        let ends = own
-            .values
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)]);
-        let mut groups: IndexMap<Vec<u64>, [Option<f64>; 2]> = IndexMap::new();
-        for (at, y) in y.iter().enumerate() {
-            let others = all.iter().filter(|other| other.name != own.name);
-            let pair = groups.entry(others.map(|other| other.values[at].to_bits()).collect()).or_default();
-            for (end, value) in ends.iter().zip(pair) {
-                if own.values[at] == *end {
-                    *value = Some(*y);
-                }
-            }
-        }
-        let changes: Vec<f64> = groups.values().filter_map(|[low, high]| Some((*high)? - (*low)?)).collect();
-        let change = if changes.is_empty() {
-            slope(&own.values, &y) * (ends[1] - ends[0])
-        } else {
-            changes.iter().sum::<f64>() / changes.len() as f64
-        };
-        Mover { parameter: own.name.clone(), ends, change: change / mean.abs() }
-    };
-    let mut found: Vec<Mover> = all.iter().filter(|own| own.is_number).map(mover).collect();
-    found.retain(|own| own.change.is_finite());
-    found.sort_by(|a, b| b.change.abs().total_cmp(&a.change.abs()));
-    found
-}
+/// The least share of the variance that must follow a plane, so that its slopes say something.
+const FOLLOWS: f64 = 0.8;
 
-/// The slope of the straight line with the least squares.
-fn slope(x: &[f64], y: &[f64]) -> f64 {
-    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
-    let (x_mean, y_mean) = (mean(x), mean(y));
-    let products = x.iter().zip(y).map(|(x, y)| (x - x_mean) * (y - y_mean));
-    products.sum::<f64>() / x.iter().map(|x| (x - x_mean).powi(2)).sum::<f64>()
+/// What each parameter does to a quantity, the largest change first: the slopes of the plane over all parameters with the least squares, times
+/// the distances of their ends. On a full grid of two values these are the mean differences. Only values of limit cycles and of steady
+/// sliding count, as in figures. The parameter `axis` is part of the plane, but explains nothing.
+///
+/// # Errors
+/// Why the jobs say nothing, as the end of a sentence that begins with their study.
+pub(in crate::report) fn movers(
+    rows: &[JobRow],
+    scalar: &Scalar,
+    axis: Option<&str>,
+) -> Result<Vec<Mover>, &'static str> {
+    let is_done = |row: &&JobRow| matches!(row.state, RowState::Done(_)) && scalar.is_settled(row);
+    let with_value = |row| Some((row, scalar.value(row).filter(|y| y.is_finite())?));
+    let (rows, y): (Vec<&JobRow>, Vec<f64>) = rows.iter().filter(is_done).filter_map(with_value).unzip();
+    if rows.is_empty() {
+        return Err("has no finished job with this quantity");
+    }
+    let all = parameters(&rows);
+    if all.iter().any(|own| !own.is_number) {
+        return Err("varies something that is no number, so its changes have no direction");
+    }
+    if all.iter().all(|own| Some(own.name.as_str()) == axis) {
+        return Err("varies no parameter but that along the axis");
+    }
+    let (count, columns) = (y.len(), all.len() + 1);
+    if count < columns + 1 {
+        return Err("has too few jobs for its parameters");
+    }
+    let ends: Vec<[f64; 2]> = all
+        .iter()
+        .map(|own| {
+            own.values
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)])
+        })
+        .collect();
+    // Each parameter goes from 0 to 1, so that its coefficient is its change.
+    let entry = |row: usize, column: usize| match column.checked_sub(1) {
+        None => 1.0,
+        Some(own) => (all[own].values[row] - ends[own][0]) / (ends[own][1] - ends[own][0]),
+    };
+    let design = DMatrix::from_fn(count, columns, entry);
+    let values = DVector::from_vec(y);
+    let plane = design.clone().svd(true, true).solve(&values, 1.0e-9);
+    let plane = plane.map_err(|_| "has points from which no plane follows")?;
+    let mean = values.mean();
+    let left = (&design * &plane - &values).norm_squared();
+    let variance = values.map(|y| y - mean).norm_squared();
+    if left > (1.0 - FOLLOWS) * variance {
+        return Err("has values that follow no plane over its parameters");
+    }
+    let mover = |(at, own): (usize, &super::Parameter)| Mover {
+        parameter: own.name.clone(),
+        ends: ends[at],
+        change: plane[at + 1] / mean.abs(),
+    };
+    let mut found: Vec<Mover> = all.iter().enumerate().map(mover).collect();
+    found.retain(|own| own.change.is_finite() && Some(own.parameter.as_str()) != axis);
+    found.sort_by(|a, b| b.change.abs().total_cmp(&a.change.abs()));
+    Ok(found)
 }

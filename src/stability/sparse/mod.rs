@@ -107,7 +107,7 @@ impl SparseStructure {
         let highest_per_s = model.ring().is_none().then(|| ALL * model.pin().omega_max_rad_s());
         let last_per_s = damped_above_hz.map(|limit_hz| TAU * limit_hz).into_iter().chain(highest_per_s);
         let last_per_s = last_per_s.fold(f64::INFINITY, f64::min);
-        if reached_per_s >= band_per_s && last_per_s.is_finite() {
+        if reached_per_s >= band_per_s && last_per_s > band_per_s && last_per_s.is_finite() {
             let most = (WORK_BEYOND / system.matrices.size()).min(MOST_BEYOND);
             reached_per_s = beyond(&system, damping_s, [band_per_s, last_per_s], part, most, &mut all)?;
         }

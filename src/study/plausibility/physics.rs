@@ -235,7 +235,11 @@ fn clamp(spec: &JobSpec) -> Option<Doubt> {
         fields: owned(fields),
         size: share,
         message: message.to_owned(),
-        help: "expected the width in metres of the strip that the holder holds".to_owned(),
+        help: if is_collet {
+            "expected the length in metres that the collet grips".to_owned()
+        } else {
+            "expected the width in metres of the strip that the holder holds".to_owned()
+        },
     };
     if clamp.width_m == 0.0 {
         let message = "only the outermost row of nodes is held, so that what is held depends on the mesh";
@@ -247,7 +251,7 @@ fn clamp(spec: &JobSpec) -> Option<Doubt> {
     }
     // A width that is too far from every row is refused when the model is made.
     let moved = width_m / clamp.width_m - 1.0;
-    (moved.abs() > MOVED).then(|| Doubt {
+    (moved.abs() > MOVED && width_m > 0.0).then(|| Doubt {
         size: moved.abs(),
         ..doubt(
             &["scene.clamp.width_m", "scene.pin.elements"],

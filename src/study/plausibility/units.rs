@@ -40,6 +40,7 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     // A time of the pin is in doubt with its material and its size.
     if found.is_empty() {
         overdamped(spec, &mut found);
+        overdamped_by_mass(spec, &mut found);
     }
     let limit_s = spec.run.limit_s;
     let transits = limit_s / scene.vibration_time_s();
@@ -84,6 +85,25 @@ fn overdamped(spec: &JobSpec, found: &mut Vec<Doubt>) {
         let help =
             "time steps are in s (55 ns is 5.5e-8 s) and frequencies in Hz (1 kHz is 1000 Hz); ζ = π β_R f";
         add(found, fields, ratio, message, help);
+    }
+}
+
+/// The same for damping in proportion to the mass: ζ = α_R/(4π f) is 1 at the frequency α_R/(4π), and larger below.
+fn overdamped_by_mass(spec: &JobSpec, found: &mut Vec<Doubt>) {
+    let critical_hz = spec.numerics.alpha_r_per_s.unwrap_or(0.0) / (4.0 * PI);
+    let ratio = critical_hz / (0.16 / spec.scene.vibration_time_s());
+    if ratio > 1.0 {
+        let message = format!(
+            "every vibration below {} Hz is damped more than critically, and so are the lowest ones of this pin",
+            short(critical_hz)
+        );
+        let fields = &[
+            "damping.second_frequency_hz",
+            "damping.loss_factor",
+            "damping.ratio",
+            "numerics.alpha_r_per_s",
+        ];
+        add(found, fields, ratio, message, "α_R is in 1/s and frequencies are in Hz; ζ = α_R/(4π f)");
     }
 }
 

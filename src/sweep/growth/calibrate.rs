@@ -332,6 +332,7 @@ impl<'a> Known<'a> {
             implausibility,
             of,
             place: place_of(&self.settings.data[number]),
+            machine_squeals: self.history.targets()[number].squeals,
         }
     }
 

@@ -61,11 +61,11 @@ pub fn assert_documented<'a>(
                 |name: &&str| all.contains(name) || *name == QUANTITY && !unknown.is_disjoint(&of_export);
             section.unused.retain(|name| !is_used(name));
             // Columns of a threshold have the name of the parameter along which it is.
-            let along = |name: &str| {
-                parameters.iter().find_map(|own| name.strip_prefix(own).filter(|rest| rest.starts_with('_')))
-            };
             let is_along = |name: &str| {
-                along(name).is_some_and(|rest| section.own.contains(format!("mu{rest}").as_str()))
+                parameters.iter().any(|own| {
+                    let rest = name.strip_prefix(own).filter(|rest| rest.starts_with('_'));
+                    rest.is_some_and(|rest| section.own.contains(format!("mu{rest}").as_str()))
+                })
             };
             unknown.retain(|name| !section.own.contains(name) && !is_along(name));
         }

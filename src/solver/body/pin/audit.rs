@@ -296,7 +296,7 @@ impl<R: Number> AuditedMotion<'_, R> {
     }
 }
 
-/// What makes the field of [`PinAudit::begin`] the damping forces: that is K p, and β_R K p + α_R M p where there is α_R.
+/// What makes the field `kp` of a [`PinAudit`] the damping forces. The field is K p, and where there is α_R it is β_R K p + α_R M p.
 fn scale_of_damping(scheme: &Scheme) -> f64 {
     if scheme.alpha_r_per_s > 0.0 { 1.0 } else { scheme.beta_r_s }
 }
