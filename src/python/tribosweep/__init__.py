@@ -191,6 +191,7 @@ def calibrate(
     at: Mapping[str, float] | None = None,
     discrepancy: Mapping[str, float] | None = None,
     most_points: int | None = None,
+    bins: int | None = None,
     db: Database = None,
     out: str | os.PathLike[str] | None = None,
     preset: str | None = None,
@@ -201,7 +202,7 @@ def calibrate(
     """Finds the values of free parameters that measured points do not rule out.
 
     `data` is a CSV file or a frame with the same columns: omega_rpm, mu_star, mu_star_error, frequency_hz, frequency_error_hz, squeals. Without it
-    they are those of the study. The answer has `best`, `region` (None if everything is ruled out), `ruled_out`, `is_known`, `points` and `jobs`; with a
+    they are those of the study. With `bins` its rows are samples, and their means in so many bins count. The answer has `best`, `region` (None if everything is ruled out), `ruled_out`, `is_known`, `points` and `jobs`; with a
     point `at`, also how implausible that is.
 
     Raises Error if the study, the data or the database is refused, or if the run was interrupted.
@@ -213,6 +214,7 @@ def calibrate(
     options += [] if most_points is None else [f"--most-points={most_points}"]
     with _file_of(study) as path, _data_file(data) as measured:
         options += [] if measured is None else ["--data", measured]
+        options += [] if bins is None else [f"--bins={bins}"]
         changes = _changes(preset, settings)
         text, doubts = call(["calibrate", path, *changes, *options], codes=WITH_RESULTS, progress_of=_path_of(db))
     found = Record(json.loads(text))
@@ -250,13 +252,15 @@ def compare(
     data: str | os.PathLike[str] | pandas.DataFrame | None = None,
     *,
     sensitivity: str | None = None,
+    bins: int | None = None,
     db: Database = None,
     out: str | os.PathLike[str] | None = None,
 ) -> pandas.DataFrame:
     """Compares stored studies with each other and with measured points, and returns a row for each difference from the first study.
 
     `data` is a CSV file or a frame with the same columns, as for `calibrate`. The sentences of the verdict are in `attrs["verdict"]`. If no
-    point could be compared, that is an InputWarning. `sensitivity` names a stored study that varies what could explain the differences.
+    point could be compared, that is an InputWarning. `sensitivity` names a stored study that varies what could explain the differences;
+    `bins` is that of `calibrate`.
 
     Raises ValueError if there is only one study and no data, and Error if the database has no such study, or if the data cannot be used.
     """
@@ -265,8 +269,9 @@ def compare(
         raise ValueError("one study has nothing to be compared with; give a second study or data")
     with _data_file(data) as path:
         measured = [] if path is None else ["--data", path]
-        varied = [] if sensitivity is None else ["--sensitivity", sensitivity]
-        table, _, messages = _reported(["report", *measured, *varied], names, "differences.csv", db, out)
+        further = [] if sensitivity is None else ["--sensitivity", sensitivity]
+        further += [] if bins is None else [f"--bins={bins}"]
+        table, _, messages = _reported(["report", *measured, *further], names, "differences.csv", db, out)
     others = ("warning: ", "  ", "report written to ")
     table.attrs["verdict"] = [line for line in messages.splitlines() if line and not line.startswith(others)]
     doubts = doubts_of(messages) + ([] if len(table) else ["no point of the first study could be compared"])
