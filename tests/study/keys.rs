@@ -3,7 +3,7 @@
 use super::parse;
 use serde_json::{Value, json};
 use tribosweep::spec::{
-    Accuracy, Base, ClampSide, Contact, DiskKind, FrictionLaw, HeightMap, Holder, JobSpec, MeshFile,
+    Accuracy, Base, ClampSide, Contact, DiskKind, Element, FrictionLaw, HeightMap, Holder, JobSpec, MeshFile,
     MuOfSpeed, Precision, Region, Roughness, Shape, StabilityMethod, Start,
 };
 use tribosweep::study::{PARAMETERS, job_key};
@@ -27,6 +27,7 @@ fn with_elastic_disk() -> JobSpec {
 pub fn full() -> JobSpec {
     let mut spec = with_elastic_disk();
     spec.numerics.alpha_r_per_s = Some(100.0);
+    (spec.scene.pin.element, spec.scene.disk.ring.element) = (Element::Incompatible, Element::Incompatible);
     spec.scene.pin.elements = [12, 15, 11];
     spec.scene.contact = Contact {
         mu: 0.4,
@@ -135,6 +136,7 @@ fn another(value: &Value, pointer: &str) -> Option<Value> {
             "/scene/clamp/side" => Some(Value::from("both_ends")),
             "/scene/top" => Some(Value::from("free_in_z")),
             "/scene/disk/kind" => Some(Value::from("rigid")),
+            "/scene/pin/element" | "/scene/disk/ring/element" => Some(Value::from("full")),
             "/scene/disk/ring/target" => Some(Value::from("ferguson")),
             "/scene/disk/ring/clock" => Some(Value::from("common")),
             "/run/start" => Some(Value::from("nested")),

@@ -184,7 +184,7 @@ fn assembled(mesh: &GeneralMesh, materials: &[Material]) -> Result<(Operator, Ve
             .get(element.material)
             .ok_or_else(|| SolverError::Mesh(format!("element {number} has no material")))?;
         let (stiffness, volumes) =
-            hexahedron::isoparametric(material, &mesh.corners_m(element), mesh.element())
+            hexahedron::isoparametric(material, &mesh.corners_m(element), mesh.element)
                 .ok_or_else(|| SolverError::Mesh(format!("element {number} is inverted")))?;
         for (&node, volume) in element.nodes.iter().zip(volumes) {
             masses_kg[node] += material.density_kg_m3 * volume;

@@ -64,12 +64,10 @@ impl MeshParts {
                 .element_positions()
                 .map(|[i, j, k]| Hexahedron { nodes: mesh.element_nodes(i, j, k), material: 0 })
                 .collect(),
-            names: Vec::new(),
             contact: face(0),
             top: face(nz),
-            clamped: None,
             divisions: Some(mesh.elements()),
-            element: Element::Full,
+            ..Self::default()
         }
     }
 }
@@ -114,7 +112,8 @@ pub struct GeneralMesh {
     worst_jacobian: f64,
     divisions: Option<[usize; 3]>,
     names: Vec<u64>,
-    element: Element,
+    /// What all elements are.
+    pub(in crate::solver::body::pin) element: Element,
 }
 
 impl GeneralMesh {
@@ -243,11 +242,6 @@ impl GeneralMesh {
     /// Extent \[m\] in x, y and z in the frame of the pin.
     pub fn size_m(&self) -> [f64; 3] {
         self.size_m
-    }
-
-    /// What all elements are.
-    pub fn element(&self) -> Element {
-        self.element
     }
 
     /// Number of elements in x, y and z, if the mesh has such directions.
