@@ -71,7 +71,12 @@ impl Comparison {
                 "{what}: {own} agrees with {of} within two standard errors {points}{range}."
             ));
         }
-        let middle = deviations[deviations.len() / 2];
+        let half = deviations.len() / 2;
+        let middle = if deviations.len() % 2 == 1 {
+            deviations[half]
+        } else {
+            0.5 * (deviations[half - 1] + deviations[half])
+        };
         let deviates = if least > 0.0 || most < 0.0 {
             let way = if middle < 0.0 { "below" } else { "above" };
             format!("{own} is {} {way} {of} {points}{range}", share(middle.abs()))

@@ -41,7 +41,7 @@ impl Shape {
     }
 }
 
-/// The element of a general mesh: that of a cylinder, a tilted pin, a pin with regions or from a file, and of an elastic disk.
+/// The element of a pin or of an elastic disk. An upright block of one material with another one than `full` is computed as a general mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema, IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
@@ -105,7 +105,7 @@ pub struct Pin {
     pub size_m: [f64; 3],
     /// Number of elements in x, y and z.
     pub elements: [usize; 3],
-    /// The element. An upright block of one material with another one than `full` is computed as a general mesh.
+    /// The element.
     #[serde(skip_serializing_if = "Element::is_full")]
     pub element: Element,
     /// Young's modulus (Pa).

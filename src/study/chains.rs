@@ -114,7 +114,10 @@ impl Job {
         let mut job = self.clone();
         job.spec.continuation = Some(Box::new(continuation.unwrap_or(Continuation::ROOT)));
         job.spec.stability = StabilityMethod::Simulate;
-        job.spec.run.start = Start::Rest;
+        // It begins in the motion of its parent, and a run on a coarser mesh can only be compared with it.
+        if job.spec.run.start != Start::Compared {
+            job.spec.run.start = Start::Rest;
+        }
         job.key = job_key(&job.spec, solver_version);
         job.parameters.retain(|(name, _)| name != own.0);
         job.parameters.push((own.0.to_owned(), own.1));

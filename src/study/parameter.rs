@@ -112,7 +112,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("nx", "/scene/pin/elements/0", Kind::Count, "elements in x, the radial direction").symbol("n_x"),
     parameter("ny", "/scene/pin/elements/1", Kind::Count, "elements in y, the sliding direction").symbol("n_y"),
     parameter("nz", "/scene/pin/elements/2", Kind::Count, "elements in z").symbol("n_z"),
-    parameter("element", "/scene/pin/element", ELEMENT, "element of a pin that is no upright block of one material"),
+    parameter("element", "/scene/pin/element", ELEMENT, "element of the pin; an upright block with another one than full is a general mesh"),
     parameter("pin_shape", "/scene/pin/shape", PIN_SHAPE, "shape of the pin"),
     parameter("diameter_m", "/scene/pin/diameter_m", Kind::Number, "diameter of a cylindrical pin").symbol("d").plausible(&LENGTH),
     parameter("tilt_x_deg", "/scene/pin/tilt_x_deg", Kind::Number, "tilt of the pin about x, which lifts its trailing end"),

@@ -21,7 +21,7 @@ pub(super) fn read(
     let points = measured::read(path, source_name)?;
     if bins.is_some() && points.has_thresholds {
         let message =
-            "it has thresholds, which are no samples; expected them in a file of their own, without --bins"
+            "the file has thresholds, which are no samples; expected them in a file of their own, without --bins"
                 .to_owned();
         return Err(MeasuredError::Content {
             file: path.display().to_string(),

@@ -208,6 +208,26 @@ fn a_chain_goes_on_after_a_retry() {
     assert_eq!(without_wall_times(&folder.ok("export study")), undisturbed(&study, "")["export"]);
 }
 
+/// Protects: a chain whose study asks for it has a run on a coarser mesh for each of its jobs, roots or not, and its export says what the error
+/// of the mesh is, or why it is not known.
+#[test]
+fn a_chain_can_be_compared_with_a_coarser_mesh() {
+    let mut study = small(&json!({ "mu": [0.4], "omega_rpm": [5, 10] }));
+    study["scene"]["pin"]["elements"] = json!([10, 10, 10]);
+    study["run"] = json!({ "limit_s": 0.02, "start": "compared" });
+    study["continue"] = json!({ "along": "omega_rpm", "directions": ["up"] });
+    let folder = Folder::with("study", &study);
+    folder.ok("run study.json");
+    let found = rows(&folder.ok("export study --all"));
+    assert_eq!(found.len(), 2);
+    for row in found {
+        let has_error = !row["mu_star_mesh_error"].is_empty();
+        let why = &row["mesh_error_unknown"];
+        assert_eq!(row["start"], "compared", "{row:?}");
+        assert!(has_error || !why.is_empty() && why != "no run on a coarser mesh", "{row:?}");
+    }
+}
+
 /// Protects: mistakes in `refine` and `continue` are refused with the field and what would be right, and no database is made.
 #[test]
 fn mistakes_are_refused() {

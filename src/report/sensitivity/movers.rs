@@ -18,6 +18,12 @@ pub(in crate::report) struct Mover {
 /// The least share of the variance that must follow a plane, so that its slopes say something.
 const FOLLOWS: f64 = 0.8;
 
+/// The smallest singular value of points over the largest one, below which parameters vary together.
+const ALIKE: f64 = 1.0e-3;
+
+/// What counts as no change of a quantity, as a share of it.
+const ROUNDING: f64 = 1.0e-9;
+
 /// What each parameter does to a quantity, the largest change first: the slopes of the plane over all parameters with the least squares, times
 /// the distances of their ends. On a full grid of two values these are the mean differences. Only values of limit cycles and of steady
 /// sliding count, as in figures. The parameter `axis` is part of the plane, but explains nothing.
@@ -61,12 +67,18 @@ pub(in crate::report) fn movers(
     };
     let design = DMatrix::from_fn(count, columns, entry);
     let values = DVector::from_vec(y);
-    let plane = design.clone().svd(true, true).solve(&values, 1.0e-9);
-    let plane = plane.map_err(|_| "has points from which no plane follows")?;
+    let parts = design.clone().svd(true, true);
+    let largest = parts.singular_values.max();
+    if parts.rank(ALIKE * largest) < columns {
+        return Err("varies parameters together, whose parts cannot be told apart");
+    }
+    let plane = parts.solve(&values, 0.0).map_err(|_| "has points from which no plane follows")?;
     let mean = values.mean();
     let left = (&design * &plane - &values).norm_squared();
     let variance = values.map(|y| y - mean).norm_squared();
-    if left > (1.0 - FOLLOWS) * variance {
+    // What does not change but for rounding follows any plane.
+    let rounding = count as f64 * (ROUNDING * mean).powi(2);
+    if left > ((1.0 - FOLLOWS) * variance).max(rounding) {
         return Err("has values that follow no plane over its parameters");
     }
     let mover = |(at, own): (usize, &super::Parameter)| Mover {
