@@ -85,6 +85,12 @@ impl Damping {
             let expected = "either this or numerics.alpha_r_per_s, not both: each gives α_R";
             return Err(refused("damping.second_frequency_hz", second_hz, expected));
         }
+        let is_ratio = self.ratio.is_some() || self.loss_factor.is_some();
+        if let Some(alpha) = alpha_r_per_s.filter(|_| is_ratio && gives("alpha_r_per_s")) {
+            let expected = "no α_R beside a ratio or a loss factor, which would not hold then; give damping.second_frequency_hz, or \
+                            numerics.beta_r_s";
+            return Err(refused("numerics.alpha_r_per_s", alpha, expected));
+        }
         let (alpha_r_per_s, beta_r_s) = if damps_pin || self.holder_ratio.is_none() {
             let beta_r_s = self.beta_r_s(beta_r_s, gives("beta_r_s"))?;
             self.with_second(beta_r_s).map_or((alpha_r_per_s, beta_r_s), |[alpha, beta]| (Some(alpha), beta))

@@ -61,6 +61,10 @@ fn the_ratio_holds_at_two_frequencies() {
             "each gives α_R",
         ),
         (
+            r#"{ "damping": { "ratio": 0.1, "frequency_hz": 5e3 }, "numerics": { "alpha_r_per_s": 3 } }"#,
+            "which would not hold then",
+        ),
+        (
             r#"{ "damping": { "beta2": 1, "at_time_step_s": 5e-8, "second_frequency_hz": 5e3 } }"#,
             "no second frequency beside beta2",
         ),
