@@ -168,9 +168,8 @@ fn from_file(pin: &Pin) -> Result<MeshParts, SolverError> {
         contact: content.contact.iter().map(face).collect(),
         top: content.load.iter().map(face).collect(),
         clamped: Some(content.clamp.iter().map(|&node| node as usize).collect()),
-        divisions: None,
-        element: pin.element,
         coordinates_m: content.nodes_m,
+        ..MeshParts::default()
     })
 }
 

@@ -17,7 +17,7 @@
 //! det = 1 − (β₂ − ½ + b) W²        trace = 2 − (½ + β₂ + b) W²
 //! ```
 //!
-//! α_R adds α_R Δt to (β_R W²)/Δt, as any damper c/m does. The recursion is stable while 1 + trace + det ≥ 0, that is **W² (β₂ + b) ≤ 2**, a quadratic inequality in Δt.
+//! α_R adds α_R Δt to b W², as any damper c/m does. The recursion is stable while 1 + trace + det ≥ 0, that is **W² (β₂ + b) ≤ 2**, a quadratic inequality in Δt.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 

@@ -156,7 +156,7 @@ impl JobSpec {
         let has_steady_state = !self.has_run() || self.scene.program.is_constant();
         // A job that continues another one has its beginning on its own mesh, and can be compared with a run from rest on another.
         let is_continued = self.continuation.is_some() && self.run.start != Start::Compared;
-        if !is_asked || !has_steady_state || is_continued {
+        if !is_asked || !has_steady_state || is_continued || !self.has_measured_elements() {
             return Vec::new();
         }
         let Some(own) = self.scene.pin.own_elements() else { return Vec::new() };
@@ -165,6 +165,14 @@ impl JobSpec {
         let fewest = if is_level || self.starts_in_motion() { FEWEST_TO_START } else { FEWEST_TO_COMPARE };
         let is_enough = half.iter().all(|&n| n >= fewest);
         if is_enough { vec![half, two_thirds] } else { Vec::new() }
+    }
+
+    /// Whether the errors of the mesh were measured with the elements of the pin and of its disk. What two meshes say of each other was not
+    /// compared with finer ones for the others.
+    pub fn has_measured_elements(&self) -> bool {
+        let Scene { pin, disk, .. } = &self.scene;
+        let of_disk = if disk.kind == DiskKind::Elastic { disk.ring.element } else { Element::Full };
+        pin.element == Element::Full && of_disk == Element::Full
     }
 
     /// Whether the run starts from the limit cycle of the coarser mesh, and not from rest.
@@ -188,6 +196,8 @@ impl JobSpec {
             "absent in a study with `continue`: its jobs begin in motions on one mesh"
         } else if self.scene.disk.kind == DiskKind::Elastic {
             "absent on an elastic disk, whose mesh has an error of its own"
+        } else if !self.has_measured_elements() {
+            "absent with incompatible elements, whose errors of the mesh were not measured"
         } else if !self.run.stop_early {
             "absent with run.stop_early = false: each mesh has as long a run as its own error needs"
         } else if self.numerics.time_step_s.is_some() {

@@ -530,6 +530,7 @@ fn an_accuracy_needs_meshes_and_a_steady_state() {
     assert_contains(&refusal(r#"{ "accuracy": {} }"#), &["accuracy", "mu_star"]);
     for (other, why) in [
         (r#""scene": { "disk": { "kind": "elastic" } }"#, "absent on an elastic disk"),
+        (r#""scene": { "pin": { "element": "incompatible" } }"#, "absent with incompatible elements"),
         (r#""numerics": { "time_step_s": 1e-8 }"#, "absent with numerics.time_step_s"),
         (
             r#""scene": { "program": { "omega_rpm": [[0, 1], [0.04, 9]] } }, "run": { "limit_s": 0.04, "window_s": 0.01 }"#,

@@ -28,38 +28,46 @@ fn free(mesh: impl Into<PinMesh>) -> Model {
     Model::new(definition(mesh, MATERIAL, Vec::new())).unwrap()
 }
 
+/// The displacements of K u = f by conjugate gradients from `start`. Held degrees of freedom do not move.
+pub fn solved(model: &Model, force: &[f64], start: Vec<f64>, held: &dyn Fn(usize) -> bool) -> Vec<f64> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let free = |x: Vec<f64>| -> Vec<f64> {
+        x.into_iter().enumerate().map(|(dof, x)| if held(dof) { 0.0 } else { x }).collect()
+    };
+    let product = |x: &[f64]| free(model.pin().stiffness_times(x));
+    let force = free(force.to_vec());
+    let mut solution = free(start);
+    let mut residual: Vec<f64> = force.iter().zip(product(&solution)).map(|(f, y)| f - y).collect();
+    let mut direction = residual.clone();
+    let mut square = dot(&residual, &residual);
+    let small = 1.0e-26 * dot(&force, &force);
+    while square > small {
+        let y = product(&direction);
+        let length = square / dot(&direction, &y);
+        for i in 0..solution.len() {
+            solution[i] += length * direction[i];
+            residual[i] -= length * y[i];
+        }
+        let next = dot(&residual, &residual);
+        for i in 0..direction.len() {
+            direction[i] = residual[i] + next / square * direction[i];
+        }
+        square = next;
+    }
+    solution
+}
+
 /// The lowest frequency [Hz] of the modes that a start contains, by inverse iteration. The start has no rigid motion, and all that it
 /// has in common with modes are those of its symmetry. Held degrees of freedom do not move.
-fn lowest_hz(model: &Model, start: &[f64], held: &dyn Fn(usize) -> bool) -> f64 {
+pub fn lowest_hz(model: &Model, start: &[f64], held: &dyn Fn(usize) -> bool) -> f64 {
     let masses = model.pin().masses_kg();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let product = |x: &[f64]| -> Vec<f64> {
-        let y = model.pin().stiffness_times(x);
-        y.into_iter().enumerate().map(|(dof, y)| if held(dof) { 0.0 } else { y }).collect()
-    };
     let mut x = start.to_vec();
     let mut omega_squared = f64::INFINITY;
     loop {
         let force: Vec<f64> = x.iter().enumerate().map(|(dof, x)| x * masses[dof / 3]).collect();
-        // Conjugate gradients from the last shape.
-        let mut solution: Vec<f64> = x.iter().map(|x| x / omega_squared.min(1.0e12)).collect();
-        let mut residual: Vec<f64> = force.iter().zip(product(&solution)).map(|(f, y)| f - y).collect();
-        let mut direction = residual.clone();
-        let mut square = dot(&residual, &residual);
-        let small = 1.0e-26 * dot(&force, &force);
-        while square > small {
-            let y = product(&direction);
-            let length = square / dot(&direction, &y);
-            for i in 0..solution.len() {
-                solution[i] += length * direction[i];
-                residual[i] -= length * y[i];
-            }
-            let next = dot(&residual, &residual);
-            for i in 0..direction.len() {
-                direction[i] = residual[i] + next / square * direction[i];
-            }
-            square = next;
-        }
+        let last: Vec<f64> = x.iter().map(|x| x / omega_squared.min(1.0e12)).collect();
+        let solution = solved(model, &force, last, held);
         let weighted: Vec<f64> = solution.iter().enumerate().map(|(dof, x)| x * masses[dof / 3]).collect();
         let next = dot(&solution, &force) / dot(&solution, &weighted);
         let norm = dot(&solution, &weighted).sqrt();

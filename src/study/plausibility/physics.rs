@@ -123,6 +123,8 @@ fn no_coarser_mesh(spec: &JobSpec) -> Option<Doubt> {
         "the program makes no coarser mesh of one from a file"
     } else if !spec.scene.program.is_constant() {
         "a run with a program has no steady state to compare"
+    } else if !spec.has_measured_elements() {
+        "nobody measured errors of the mesh with incompatible elements"
     } else {
         "half as many elements in each direction are too few"
     };

@@ -258,7 +258,7 @@ impl<R: Number> AuditedMotion<'_, R> {
         let all = |value| splat::<R, S>(simd, value);
         let row = |row| load::<R, S>(simd, row);
         let [gain, per_p, u_scale] = [row(&factors.gain), row(&factors.per_p), row(&factors.u_scale)];
-        let [half, beta_r, of_a2] = [all(0.5), all(scale), all(0.5 * gamma * dt * dt)];
+        let [half, scale, of_a2] = [all(0.5), all(scale), all(0.5 * gamma * dt * dt)];
         let [dt, zero] = [all(dt), all(0.0)];
         let blocks = columns.len();
         columns.fill([R::Totals::default(); SUMS]);
@@ -280,7 +280,7 @@ impl<R: Number> AuditedMotion<'_, R> {
                         sums[KINETIC] += half_mass * (v * v - of_a2 * (a * a));
                         if damps {
                             let stroke = dt * p + u_scale * a;
-                            sums[DAMPING_AFTER] += (beta_r * row(&self.kp[at].0[c])) * stroke;
+                            sums[DAMPING_AFTER] += (scale * row(&self.kp[at].0[c])) * stroke;
                         }
                         if let Some([_, before]) = &self.accelerations {
                             let jump = a - row(&before[at].0[c]);
