@@ -275,6 +275,9 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
         if let Err(error) = guard::check_contact(&self.model, &self.state, lane) {
             return Some(Err(error.into()));
         }
+        if let Err(error) = guard::check_step(&self.model, &self.state, lane) {
+            return Some(Err(error.into()));
+        }
         let steps = self.state.steps_done(lane);
         let settled = audited && run.stop_early && run.analysis.is_settled();
         if steps < run.steps && !settled {

@@ -76,6 +76,34 @@ pub enum SolverError {
         /// The convergence tolerance, relative to the largest force.
         tolerance: f64,
     },
+    /// An element of a pin with large strains is turned inside out; there is no result.
+    #[error(
+        "element {element} is inverted at t = {time_s:.6e} s (step {step}): the strains are larger than this mesh can have; \
+         look for an edge that is squeezed or folded, and give a lower load, a coarser mesh there or a stiffer material"
+    )]
+    Inverted {
+        /// The name of the element.
+        element: u64,
+        /// Step at which it was found.
+        step: u64,
+        /// Its time \[s\].
+        time_s: f64,
+    },
+    /// The pin has deformed so much that the time step is above the stability limit.
+    #[error(
+        "at t = {time_s:.6e} s the pin has deformed so that the stability limit is {limit_s:e} s, below the time step of \
+         {time_step_s:e} s; give numerics.safety_factor = {safety_factor:.2} or less"
+    )]
+    StepOutgrown {
+        /// The time at which it was found \[s\].
+        time_s: f64,
+        /// The stability limit then \[s\].
+        limit_s: f64,
+        /// The time step \[s\].
+        time_step_s: f64,
+        /// A safety factor with which the step would be far enough below this limit.
+        safety_factor: f64,
+    },
     /// The run diverged; there is no result.
     #[error(
         "diverged at step {step} (t = {time_s:.6e} s), worst at node {node} \

@@ -3,7 +3,7 @@
 use super::drive::Drive;
 use super::energy::Energies;
 use super::error::SolverError;
-use super::field::FieldOf;
+use super::field::{Field, FieldOf};
 use super::interface::solve::RunNumber;
 use super::interface::solve::sweeps::{MAX_SWEEPS, TOLERANCE};
 use super::model::Model;
@@ -45,6 +45,9 @@ pub fn check<const L: usize, R: RunNumber>(
     if stored <= STORED_FACTOR * scale && magnitude <= MAGNITUDE_FACTOR * scale && scale.is_finite() {
         return Ok(());
     }
+    if let Some(error) = inverted(model, state, lane) {
+        return Err(error);
+    }
     let what = if magnitude.is_finite() && scale.is_finite() {
         format!(
             "stored energy {stored:.3e} J (kinetic {:.3e} J, elastic {:.3e} J) against {input:.3e} J put in",
@@ -54,6 +57,64 @@ pub fn check<const L: usize, R: RunNumber>(
         NOT_FINITE.to_owned()
     };
     Err(diverged(model, state, lane, what))
+}
+
+/// The first check of the stability limit of a pin whose deformation changes it. Later ones follow after as many steps again, up to
+/// [`STEPS_PER_CHECK`]. A check costs some 70 steps.
+const FIRST_CHECK: u64 = 32;
+
+/// Most steps between two such checks.
+const STEPS_PER_CHECK: u64 = 8192;
+
+/// Share of the stability limit of the deformed pin that the safety factor of an error message leaves.
+const ADVISED_SHARE: f64 = 0.9;
+
+/// Checks the stability limit of the deformed pin in a lane, in some steps of a run with large strains.
+///
+/// # Errors
+/// [`SolverError::StepOutgrown`] if it is below the time step.
+pub fn check_step<const L: usize, R: RunNumber>(
+    model: &Model,
+    state: &StateOf<L, R>,
+    lane: usize,
+) -> Result<(), SolverError> {
+    let steps = state.steps_done(lane);
+    let is_early = steps.is_power_of_two() && (FIRST_CHECK..STEPS_PER_CHECK).contains(&steps);
+    if !(is_early || steps.is_multiple_of(STEPS_PER_CHECK)) {
+        return Ok(());
+    }
+    let Some(limit_s) = model.deformed_limit_s(&displacements(model, state, lane)) else { return Ok(()) };
+    let time_step_s = model.time_step_s();
+    if time_step_s <= limit_s {
+        return Ok(());
+    }
+    let safety_factor = ADVISED_SHARE * limit_s / model.time_step_limit_s();
+    Err(SolverError::StepOutgrown {
+        time_s: steps as f64 * time_step_s,
+        limit_s,
+        time_step_s,
+        safety_factor: (100.0 * safety_factor).floor() / 100.0,
+    })
+}
+
+/// The displacements of a lane.
+fn displacements<const L: usize, R: RunNumber>(
+    model: &Model,
+    state: &StateOf<L, R>,
+    lane: usize,
+) -> Field<1> {
+    let values: Vec<f64> = state.u.values().skip(lane).step_by(L).collect();
+    Field::from_values(model.mesh().layout(), &values)
+}
+
+fn inverted<const L: usize, R: RunNumber>(
+    model: &Model,
+    state: &StateOf<L, R>,
+    lane: usize,
+) -> Option<SolverError> {
+    let element = model.pin().inverted_element(&displacements(model, state, lane))?;
+    let step = state.steps_done(lane);
+    Some(SolverError::Inverted { element, step, time_s: step as f64 * model.time_step_s() })
 }
 
 /// Checks at the end of a run that every displacement and velocity of a lane is finite.
@@ -115,6 +176,11 @@ fn diverged<const L: usize, R: RunNumber>(
         format!(
             "the time step is {ratio:.6} of the stability limit, where the highest mode alternates undamped and \
              contact can feed it; take at most {AT_THE_LIMIT} of it"
+        )
+    } else if model.pin().operator().law().is_some() {
+        format!(
+            "the time step is {ratio:.4} of the stability limit of the undeformed pin: large strains lower it, so give a smaller \
+             numerics.safety_factor, or look for extreme material, load or friction values in this job"
         )
     } else {
         format!(

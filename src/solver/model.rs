@@ -3,6 +3,7 @@
 use super::body::pin::{PinBody, PinMesh, Stiffness};
 use super::body::ring::{RingBody, RingDefinition, UnsteppedRing};
 use super::error::SolverError;
+use super::field::Field;
 use super::interface::target::{SurfaceMotion, Target, TargetDefinition, UnsteppedTarget, rotating_disk};
 use super::interface::{Interface, Layer, Relief, SlaveNode};
 use super::material::Material;
@@ -78,9 +79,7 @@ impl Model {
         let pin = PinBody::new(mesh, materials, stiffness, freedoms, acted_on)?;
         let interface = Interface::new(&pin, &surface_motion);
 
-        let of_block = Bound { omega_max_rad_s: pin.omega_max_rad_s(), damping_per_s: alpha_r_per_s };
-        let bound =
-            supports.iter().fold(of_block, |bound, support| bound.and(support.bound(pin.masses_kg())));
+        let bound = bound_of(&pin, &supports, pin.omega_max_rad_s(), alpha_r_per_s);
         let pin_limit = bound.time_step_limit_s(beta2, beta_r_s);
         let (target_limit, target_omega_max) =
             target.longest_step_s(beta_r_s).unwrap_or((f64::INFINITY, 0.0));
@@ -189,10 +188,24 @@ impl Model {
         self.time_step_limit_s
     }
 
+    /// The stability limit \[s\] of the pin with these displacements; returns `None` if it is the same for all displacements.
+    pub fn deformed_limit_s(&self, u: &Field<1>) -> Option<f64> {
+        let omega_max_rad_s = self.pin.deformed_omega_max_rad_s(u)?;
+        let Scheme { beta2, beta_r_s, alpha_r_per_s, .. } = self.scheme;
+        let bound = bound_of(&self.pin, &self.supports, omega_max_rad_s, alpha_r_per_s);
+        Some(bound.time_step_limit_s(beta2, beta_r_s))
+    }
+
     /// Width \[m\] of the scene's clamp on the mesh; 0 for a model that was not built from a scene.
     pub fn clamp_width_m(&self) -> f64 {
         self.clamp_width_m
     }
+}
+
+/// The bound of a pin with its supports.
+fn bound_of(pin: &PinBody, supports: &[Support], omega_max_rad_s: f64, alpha_r_per_s: f64) -> Bound {
+    let of_pin = Bound { omega_max_rad_s, damping_per_s: alpha_r_per_s };
+    supports.iter().fold(of_pin, |bound, support| bound.and(support.bound(pin.masses_kg())))
 }
 
 /// The target before the time step is known, and the velocity of its surface under the slave nodes.

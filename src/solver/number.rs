@@ -46,6 +46,8 @@ pub trait Number: SimdFloatElement + Send + Sync + 'static {
     fn to_f64(self) -> f64;
     /// Adds the numbers of a vector to totals, slot by slot.
     fn add_to_totals<S: Simd>(totals: &mut Self::Totals, vector: Self::Vector<S>);
+    /// The numbers themselves in double precision; returns `None` in single precision.
+    fn doubles(numbers: &mut [Self]) -> Option<&mut [f64]>;
     /// The form of a table in these numbers. The rounded one is made when it is needed.
     fn of_both<'a, const N: usize>(
         double: &'a [[f64; N]],
@@ -161,6 +163,10 @@ impl Number for f64 {
         (f64x8::load_array_ref(vector.simd, totals) + vector).store_array(totals);
     }
 
+    fn doubles(numbers: &mut [f64]) -> Option<&mut [f64]> {
+        Some(numbers)
+    }
+
     fn of_both<'a, const N: usize>(
         double: &'a [[f64; N]],
         _single: impl FnOnce() -> &'a [[f32; N]],
@@ -195,6 +201,10 @@ impl Number for f32 {
         for i in 0..16 {
             totals[i] += f64::from(row[i]);
         }
+    }
+
+    fn doubles(_: &mut [f32]) -> Option<&mut [f64]> {
+        None
     }
 
     fn of_both<'a, const N: usize>(

@@ -9,7 +9,7 @@ use super::material::Material;
 use super::model::{Model, ModelDefinition};
 use super::scheme::TimeStep;
 use super::support::{clamp, load};
-use crate::spec::{DiskKind, Numerics, Pin, Precision, Scene, Shape};
+use crate::spec::{DiskKind, Numerics, Pin, Precision, Scene, Shape, Strains};
 use std::ops::RangeInclusive;
 
 /// Numbers with which a step in single precision multiplies. Its range is 10⁻³⁸ to 3·10³⁸.
@@ -27,7 +27,10 @@ impl Model {
         let regions = scene.pin.regions.iter().map(Material::of_region);
         let definition = ModelDefinition {
             materials: std::iter::once(Material::of_pin(&scene.pin)).chain(regions).collect(),
-            stiffness: Stiffness::Elastic,
+            stiffness: match scene.pin.strains {
+                Strains::Small => Stiffness::Elastic,
+                Strains::Finite => Stiffness::Hyperelastic(scene.pin.hyperelasticity),
+            },
             supports: clamp::supports(&mesh, &strip, scene.top, &scene.holder),
             load: load::normal_load(&mesh),
             target: match scene.disk.kind {

@@ -32,6 +32,7 @@ mod ring;
 mod roughness;
 mod scene;
 mod stability;
+mod strains;
 
 pub use accuracy::Accuracy;
 pub use base::Base;
@@ -54,6 +55,7 @@ pub use roughness::MOST_HEIGHTS;
 pub use roughness::{HeightMap, Roughness};
 pub use scene::{Clamp, ClampSide, Load, Scene, TopFace};
 pub use stability::StabilityMethod;
+pub use strains::{Hyperelasticity, Strains};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -101,6 +103,7 @@ impl JobSpec {
         self.run.check(&mut found);
         self.detection.check(&mut found);
         self.scene.check_program(self.run.limit_s, &mut found);
+        self.check_strains(&mut found);
         if self.has_run() {
             self.check_run(&mut found);
         } else {
@@ -167,12 +170,12 @@ impl JobSpec {
         if is_enough { vec![half, two_thirds] } else { Vec::new() }
     }
 
-    /// Whether the errors of the mesh were measured with the elements of the pin and of its disk. What two meshes say of each other was not
+    /// Whether the errors of the mesh were measured with the elements and the strains of the pin and of its disk. What two meshes say of each other was not
     /// compared with finer ones for the others.
     pub fn has_measured_elements(&self) -> bool {
         let Scene { pin, disk, .. } = &self.scene;
         let of_disk = if disk.kind == DiskKind::Elastic { disk.ring.element } else { Element::Full };
-        pin.element == Element::Full && of_disk == Element::Full
+        pin.element == Element::Full && of_disk == Element::Full && pin.strains == Strains::Small
     }
 
     /// Whether the run starts from the limit cycle of the coarser mesh, and not from rest.
@@ -184,28 +187,6 @@ impl JobSpec {
     /// that is not flat, or a layer. It is carried over between upright blocks of one material.
     fn carries_motion(&self) -> bool {
         self.keeps_no_past() && self.scene.pin.base.is_flat() && self.scene.pin.is_plain_block()
-    }
-
-    /// What an accuracy needs: a steady state, and meshes that the program makes.
-    fn check_levels(&self, found: &mut Violations) {
-        let refused = if self.scene.pin.own_elements().is_none() {
-            "absent for a mesh from a file: the program makes no finer one of it"
-        } else if !self.scene.program.is_constant() {
-            "absent with scene.program: such a run has no steady state"
-        } else if self.continuation.is_some() {
-            "absent in a study with `continue`: its jobs begin in motions on one mesh"
-        } else if self.scene.disk.kind == DiskKind::Elastic {
-            "absent on an elastic disk, whose mesh has an error of its own"
-        } else if !self.has_measured_elements() {
-            "absent with incompatible elements, whose errors of the mesh were not measured"
-        } else if !self.run.stop_early {
-            "absent with run.stop_early = false: each mesh has as long a run as its own error needs"
-        } else if self.numerics.time_step_s.is_some() {
-            "absent with numerics.time_step_s: each mesh has its own time step"
-        } else {
-            return;
-        };
-        found.add("accuracy", "given", refused);
     }
 
     /// Whether there is a run. Modes alone have none, and nothing that only a run needs can forbid them.
@@ -307,6 +288,10 @@ impl JobSpec {
 
     /// What the equations of steady sliding do not cover.
     fn check_modes(&self, found: &mut Violations) {
+        if self.scene.pin.strains == Strains::Finite {
+            let right = "small: the complex modes of steady sliding are those of the undeformed pin";
+            found.add("scene.pin.strains", "finite", right);
+        }
         let law = self.scene.contact.law;
         if law.memory() == Memory::Limit {
             let right = "another law: the complex modes of steady sliding have no state of friction";

@@ -4,6 +4,7 @@ use super::base::Base;
 use super::check::Violations;
 use super::elasticity;
 use super::mesh::MeshFile;
+use super::strains::{Hyperelasticity, Strains};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::IntoStaticStr;
@@ -52,6 +53,9 @@ pub enum Element {
     /// The same with three modes of its own for each component of the displacements, which let it bend (Taylor, Beresford and Wilson
     /// 1976). A time step costs the same.
     Incompatible,
+    /// The same with the mean of the change of volume over the element, which does not lock where ν is near ½ (Nagtegaal, Parks and Rice
+    /// 1974).
+    Selective,
 }
 
 impl Element {
@@ -108,6 +112,12 @@ pub struct Pin {
     /// The element.
     #[serde(skip_serializing_if = "Element::is_full")]
     pub element: Element,
+    /// The strains.
+    #[serde(skip_serializing_if = "Strains::is_small")]
+    pub strains: Strains,
+    /// The law of the material with finite strains.
+    #[serde(skip_serializing_if = "Hyperelasticity::is_neo_hookean")]
+    pub hyperelasticity: Hyperelasticity,
     /// Young's modulus (Pa).
     pub young_modulus_pa: f64,
     /// Poisson's ratio, −1 < ν < 0.5.
@@ -133,6 +143,8 @@ impl Default for Pin {
             size_m: [0.012, 0.015, 0.010],
             elements: [12, 15, 10],
             element: Element::Full,
+            strains: Strains::Small,
+            hyperelasticity: Hyperelasticity::NeoHookean,
             young_modulus_pa: 1.0e9,
             poisson_ratio: 0.3,
             density_kg_m3: 2500.0,
@@ -158,6 +170,7 @@ impl Pin {
     pub fn is_plain_block(&self) -> bool {
         self.shape == Shape::Block
             && self.element == Element::Full
+            && self.strains == Strains::Small
             && self.regions.is_empty()
             && !self.is_tilted()
     }

@@ -7,8 +7,8 @@ use super::plausible::{DENSITY, FRICTION, LENGTH, MODULUS, Plausible};
 use super::preset::Preset;
 use super::suggest;
 use crate::spec::{
-    ClampSide, DiskKind, DiskTimeStep, Element, FrictionLaw, Precision, Shape, StabilityMethod, Start,
-    TargetSurface, TopFace,
+    ClampSide, DiskKind, DiskTimeStep, Element, FrictionLaw, Hyperelasticity, Precision, Shape,
+    StabilityMethod, Start, Strains, TargetSurface, TopFace,
 };
 use crate::units::name_and_unit;
 use schemars::{Schema, SchemaGenerator};
@@ -67,6 +67,8 @@ const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
 const TARGET: Kind = Kind::Name(SchemaGenerator::subschema_for::<TargetSurface>);
 const PRESET: Kind = Kind::Name(SchemaGenerator::subschema_for::<Preset>);
 const ELEMENT: Kind = Kind::Name(SchemaGenerator::subschema_for::<Element>);
+const STRAINS: Kind = Kind::Name(SchemaGenerator::subschema_for::<Strains>);
+const HYPERELASTICITY: Kind = Kind::Name(SchemaGenerator::subschema_for::<Hyperelasticity>);
 const PRECISION: Kind = Kind::Name(SchemaGenerator::subschema_for::<Precision>);
 const STABILITY: Kind = Kind::Name(SchemaGenerator::subschema_for::<StabilityMethod>);
 const START: Kind = Kind::Name(SchemaGenerator::subschema_for::<Start>);
@@ -113,6 +115,8 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("ny", "/scene/pin/elements/1", Kind::Count, "elements in y, the sliding direction").symbol("n_y"),
     parameter("nz", "/scene/pin/elements/2", Kind::Count, "elements in z").symbol("n_z"),
     parameter("element", "/scene/pin/element", ELEMENT, "element of the pin; an upright block with another one than full is a general mesh"),
+    parameter("strains", "/scene/pin/strains", STRAINS, "small or finite strains of the pin; an upright block with finite ones is a general mesh"),
+    parameter("hyperelasticity", "/scene/pin/hyperelasticity", HYPERELASTICITY, "law of the material with finite strains"),
     parameter("pin_shape", "/scene/pin/shape", PIN_SHAPE, "shape of the pin"),
     parameter("diameter_m", "/scene/pin/diameter_m", Kind::Number, "diameter of a cylindrical pin").symbol("d").plausible(&LENGTH),
     parameter("tilt_x_deg", "/scene/pin/tilt_x_deg", Kind::Number, "tilt of the pin about x, which lifts its trailing end"),

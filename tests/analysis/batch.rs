@@ -8,7 +8,7 @@ use tribosweep_mechanics::analysis::continuation::PinMotion;
 use tribosweep_mechanics::analysis::{CoarseStart, JobRecord, Outcome, Unobserved, solve};
 use tribosweep_mechanics::spec::{
     Accuracy, ClampSide, Continuation, DiskKind, FrictionLaw, JobSpec, MuOfSpeed, Precision, Region, Shape,
-    StabilityMethod, Start, Table,
+    StabilityMethod, Start, Strains, Table,
 };
 
 /// Turns between two interruptions of a job.
@@ -131,14 +131,19 @@ fn companions_and_interruptions_change_nothing_with_other_laws() {
 /// Protects: the same with general meshes, whose nodes are in lines that do not fill their vectors, and with damping in proportion to the mass.
 #[test]
 fn companions_and_interruptions_change_nothing_on_general_meshes() {
-    for (disk, precision) in [
-        (DiskKind::Rigid, Precision::Double),
-        (DiskKind::Rigid, Precision::Single),
-        (DiskKind::Elastic, Precision::Double),
+    for (disk, precision, strains) in [
+        (DiskKind::Rigid, Precision::Double, Strains::Small),
+        (DiskKind::Rigid, Precision::Double, Strains::Finite),
+        (DiskKind::Rigid, Precision::Single, Strains::Small),
+        (DiskKind::Elastic, Precision::Double, Strains::Small),
     ] {
         let mut jobs = jobs(disk, precision);
         for job in &mut jobs {
             let pin = &mut job.scene.pin;
+            pin.strains = strains;
+            if strains == Strains::Finite {
+                job.numerics.beta2 = 0.5;
+            }
             pin.shape = Shape::Cylinder;
             pin.diameter_m = Some(0.012);
             pin.elements = [5, 5, 4];
@@ -316,8 +321,15 @@ fn a_resumed_job_in_single_precision_has_the_same_bits() {
 #[test]
 fn a_resumed_job_on_an_elastic_disk_has_the_same_bits() {
     let jobs = observed(DiskKind::Elastic, Precision::Double);
-    resumed_jobs_have_the_same_bits(&jobs, &[0, 2, 3, 7], &PAUSES);
+    resumed_jobs_have_the_same_bits(&jobs, &[0, 3], &PAUSES[1..2]);
     assert!(alone(&jobs[3]).contains("decayed"), "the watch for a decay was among it");
+}
+
+/// Protects: the same for more jobs that are interrupted more often.
+#[test]
+#[ignore = "twelve jobs on an elastic disk, each interrupted up to forty times"]
+fn more_resumed_jobs_on_an_elastic_disk_have_the_same_bits() {
+    resumed_jobs_have_the_same_bits(&observed(DiskKind::Elastic, Precision::Double), &[0, 2, 3, 7], &PAUSES);
 }
 
 /// Protects: the same if the job is on a coarser mesh, or has come from there; also if that mesh is reached from one that is

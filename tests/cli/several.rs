@@ -19,7 +19,7 @@ fn many() -> Value {
     let mut study = small(&json!({
         "mu": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6],
         "omega_rpm": [5, 20],
-        "limit_s": [0.04, 0.06, 0.08, 0.10, 0.12],
+        "limit_s": [0.03, 0.04, 0.05, 0.06, 0.07],
     }));
     study["run"] = json!({ "stop_early": false });
     study

@@ -3,8 +3,8 @@
 use super::parse;
 use serde_json::{Value, json};
 use tribosweep::spec::{
-    Accuracy, Base, ClampSide, Contact, DiskKind, Element, FrictionLaw, HeightMap, Holder, JobSpec, MeshFile,
-    MuOfSpeed, Precision, Region, Roughness, Shape, StabilityMethod, Start,
+    Accuracy, Base, ClampSide, Contact, DiskKind, Element, FrictionLaw, HeightMap, Holder, Hyperelasticity,
+    JobSpec, MeshFile, MuOfSpeed, Precision, Region, Roughness, Shape, StabilityMethod, Start, Strains,
 };
 use tribosweep::study::{PARAMETERS, job_key};
 
@@ -28,6 +28,8 @@ pub fn full() -> JobSpec {
     let mut spec = with_elastic_disk();
     spec.numerics.alpha_r_per_s = Some(100.0);
     (spec.scene.pin.element, spec.scene.disk.ring.element) = (Element::Incompatible, Element::Incompatible);
+    (spec.scene.pin.strains, spec.scene.pin.hyperelasticity) =
+        (Strains::Finite, Hyperelasticity::StVenantKirchhoff);
     spec.scene.pin.elements = [12, 15, 11];
     spec.scene.contact = Contact {
         mu: 0.4,
@@ -137,6 +139,8 @@ fn another(value: &Value, pointer: &str) -> Option<Value> {
             "/scene/top" => Some(Value::from("free_in_z")),
             "/scene/disk/kind" => Some(Value::from("rigid")),
             "/scene/pin/element" | "/scene/disk/ring/element" => Some(Value::from("full")),
+            "/scene/pin/strains" => Some(Value::from("small")),
+            "/scene/pin/hyperelasticity" => Some(Value::from("neo_hookean")),
             "/scene/disk/ring/target" => Some(Value::from("ferguson")),
             "/scene/disk/ring/clock" => Some(Value::from("common")),
             "/run/start" => Some(Value::from("nested")),

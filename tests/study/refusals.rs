@@ -519,6 +519,26 @@ fn programs_that_are_no_tables_are_refused() {
     assert_contains(&of("", r#", "run": { "window_s": 1 }"#), &["run.window_s = 1: expected a length"]);
 }
 
+/// Protects: what holds for small strains alone is refused with large ones, and a law of large strains without them.
+#[test]
+fn large_strains_refuse_what_is_linear() {
+    for (pin, other, field) in [
+        ("", r#""scene": { "disk": { "kind": "elastic" } }"#, "scene.disk.kind = elastic"),
+        ("", r#""numerics": { "precision": "single" }"#, "numerics.precision = single"),
+        ("", r#""numerics": { "beta2": 0.6 }"#, "numerics.beta2 = 0.6"),
+        (r#", "element": "incompatible""#, r#""name": "a""#, "scene.pin.element = incompatible"),
+    ] {
+        let pin = format!(r#""pin": {{ "strains": "finite"{pin} }}"#);
+        let text = match other.strip_prefix(r#""scene": {"#) {
+            Some(rest) => format!(r#"{{ "scene": {{ {pin}, {rest} }}"#),
+            None => format!(r#"{{ "scene": {{ {pin} }}, {other} }}"#),
+        };
+        assert_contains(&refusal(&text), &[field, "with scene.pin.strains = finite"]);
+    }
+    let law = r#"{ "scene": { "pin": { "hyperelasticity": "st_venant_kirchhoff" } } }"#;
+    assert_contains(&refusal(law), &["scene.pin.hyperelasticity = st_venant_kirchhoff: expected absent"]);
+}
+
 /// Protects: an accuracy is a share of μ*, and is asked for only where there are meshes to go through and a steady state.
 #[test]
 fn an_accuracy_needs_meshes_and_a_steady_state() {
@@ -530,7 +550,11 @@ fn an_accuracy_needs_meshes_and_a_steady_state() {
     assert_contains(&refusal(r#"{ "accuracy": {} }"#), &["accuracy", "mu_star"]);
     for (other, why) in [
         (r#""scene": { "disk": { "kind": "elastic" } }"#, "absent on an elastic disk"),
-        (r#""scene": { "pin": { "element": "incompatible" } }"#, "absent with incompatible elements"),
+        (
+            r#""scene": { "pin": { "element": "incompatible" } }"#,
+            "absent with large strains or another element",
+        ),
+        (r#""scene": { "pin": { "strains": "finite" } }"#, "absent with large strains or another element"),
         (r#""numerics": { "time_step_s": 1e-8 }"#, "absent with numerics.time_step_s"),
         (
             r#""scene": { "program": { "omega_rpm": [[0, 1], [0.04, 9]] } }, "run": { "limit_s": 0.04, "window_s": 0.01 }"#,

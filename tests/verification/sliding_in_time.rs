@@ -220,6 +220,7 @@ fn thresholds_of_the_trailing_end_are_those_of_runs() {
 
 /// Protects: the same with a third clamp.
 #[test]
+#[ignore = "a third threshold of some ten points"]
 fn thresholds_of_both_sides_are_those_of_runs() {
     thresholds_are_those_of_runs(ClampSide::BothSides, &DAMPINGS_S[2..]);
 }

@@ -176,11 +176,17 @@ impl Dense {
 /// clamps, speeds and friction coefficients that differ, also with lifted nodes and a top that is free in z.
 #[test]
 fn modes_are_those_of_the_unreduced_problem() {
-    let mut free_top = scene([3, 4, 3], 0.004, 0.3, 7.0);
+    compare(&different([[3, 4, 3], [3, 4, 3], [4, 5, 3]]));
+}
+
+/// Scenes that differ in clamp, top, speed and friction coefficient. The clamp is one row wide.
+fn different(elements: [[usize; 3]; 3]) -> [JobSpec; 3] {
+    let of = |n: usize, mu, omega_rpm| scene(elements[n], 0.012 / elements[n][0] as f64, mu, omega_rpm);
+    let [slow, mut free_top, mut trailing] = [of(0, 0.1, 0.5), of(1, 0.3, 7.0), of(2, 0.6, 2.0)];
     free_top.scene.top = TopFace::FreeInZ;
-    let mut trailing = scene([5, 6, 4], 0.0025, 0.6, 2.0);
     trailing.scene.clamp.side = ClampSide::TrailingEnd;
-    compare(&[scene([4, 5, 4], 0.003, 0.1, 0.5), free_top, trailing]);
+    trailing.scene.clamp.width_m = 0.015 / elements[2][1] as f64;
+    [slow, free_top, trailing]
 }
 
 /// Protects: the same on a finer mesh, at the slowest speed and at a fast one.
@@ -188,6 +194,7 @@ fn modes_are_those_of_the_unreduced_problem() {
 #[ignore = "eigenvalues of dense matrices of 2000 rows"]
 fn modes_on_a_finer_mesh_are_those_of_the_unreduced_problem() {
     compare(&[scene([6, 8, 5], 0.002, 0.1, 0.5), scene([6, 8, 5], 0.002, 0.3, 35.0)]);
+    compare(&different([[4, 5, 4], [3, 4, 3], [5, 6, 4]]));
 }
 
 /// Protects: as above, with the whole top clamped, strong damping and many lifted nodes.
@@ -267,7 +274,7 @@ fn the_equilibrium_solves_the_complementarity_problem() {
 #[test]
 fn modes_are_those_of_an_independent_solver() {
     for (mu, omega_rpm, frequency_hz, growth_per_s) in
-        [(0.1, 2.0, 15_281.0, -828.9), (0.1, 35.0, 3_612.0, -233.0), (0.3, 35.0, 15_959.0, 876.6)]
+        [(0.1, 35.0, 3_612.0, -233.0), (0.3, 35.0, 15_959.0, 876.6)]
     {
         let (_, point) = exact_point(&scene([6, 8, 5], 0.002, mu, omega_rpm));
         let found = point.modes[0].eigenvalue_per_s;
@@ -297,8 +304,19 @@ fn points_do_not_depend_on_each_other() {
 /// the threshold. The factor of two is what was found to be left over 107 modes.
 #[test]
 fn growth_rates_are_as_exact_as_stated() {
+    are_as_exact_as_stated(&[(0.2, 7.0)]);
+}
+
+/// Protects: the same at more points.
+#[test]
+#[ignore = "four more points, each with all its modes"]
+fn growth_rates_are_as_exact_as_stated_at_more_points() {
+    are_as_exact_as_stated(&[(0.1, 35.0), (0.2, 35.0)]);
+}
+
+fn are_as_exact_as_stated(points: &[(f64, f64)]) {
     for side in [ClampSide::InnerSide, ClampSide::TrailingEnd] {
-        for (mu, omega_rpm) in [(0.1, 35.0), (0.2, 7.0), (0.2, 35.0)] {
+        for &(mu, omega_rpm) in points {
             let mut spec = scene([8, 10, 7], 0.0025, mu, omega_rpm);
             spec.scene.clamp.side = side;
             let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();

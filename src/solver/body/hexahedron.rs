@@ -40,6 +40,9 @@ pub fn stiffness(material: &Material, h: [f64; 3]) -> ElementStiffness {
 /// Jacobian J₀ of the centre and the factor |J₀|/|J|, so that their mean over the element is zero: then the patch test holds on any mesh
 /// (R. L. Taylor, P. J. Beresford and E. L. Wilson, *A non-conforming element for stress analysis*, IJNME 10, 1976). What they
 /// contribute is found once, from the condition that no force acts on them, so that K keeps its 24 rows.
+///
+/// A selective element has the energy ½λ (tr ε)² of the mean of tr ε over the element (J. C. Nagtegaal, D. M. Parks and J. R. Rice, CMAME 4,
+/// 1974), so that a nearly incompressible material does not lock.
 pub fn isoparametric(
     material: &Material,
     corners: &[Vector3<f64>; 8],
@@ -50,6 +53,8 @@ pub fn isoparametric(
     let mut k = ElementStiffness::zeros();
     let mut volumes = [0.0; 8];
     let (mut across, mut own) = (SMatrix::<f64, 24, 9>::zeros(), SMatrix::<f64, 9, 9>::zeros());
+    let (mut dilation, mut volume) = (SMatrix::<f64, 24, 1>::zeros(), 0.0);
+    let lambda_of_points = if element == Element::Selective { 0.0 } else { lambda };
     let jacobian_at = |local: &[Vector3<f64>; 8]| -> Matrix3<f64> {
         local.iter().zip(corners).map(|(g, x)| g * x.transpose()).sum()
     };
@@ -71,7 +76,13 @@ pub fn isoparametric(
                 (0..3).map(|axis| if a >> axis & 1 == 0 { 1.0 - xi[axis] } else { 1.0 + xi[axis] }).product();
             volumes[a] += weight * shape / 8.0;
         }
-        add_products(&mut k, &gradients, &gradients, [lambda, shear], weight);
+        add_products(&mut k, &gradients, &gradients, [lambda_of_points, shear], weight);
+        volume += weight;
+        for (a, gradient) in gradients.iter().enumerate() {
+            for c in 0..3 {
+                dilation[3 * a + c] += weight * gradient[c];
+            }
+        }
         if element == Element::Incompatible {
             let modes: [Vector3<f64>; 3] = std::array::from_fn(|axis| {
                 let mut local = Vector3::zeros();
@@ -85,7 +96,26 @@ pub fn isoparametric(
     if element == Element::Incompatible {
         k -= across * own.try_inverse()? * across.transpose();
     }
+    if element == Element::Selective {
+        k += dilation * dilation.transpose() * (lambda / volume);
+    }
     Some(((k + k.transpose()) * 0.5, volumes))
+}
+
+/// The inverse of the Jacobian, ∂ξ_a/∂x_j \[1/m\] in row j and column a for the unit cube, and the volume \[m³\] of each Gauss point of a
+/// hexahedron with these corners \[m\]. `None` if the element is inverted at one of them.
+pub fn gauss_jacobians(corners: &[Vector3<f64>; 8]) -> Option<[(Matrix3<f64>, f64); 8]> {
+    let mut points = [(Matrix3::zeros(), 0.0); 8];
+    for (point, found) in points.iter_mut().enumerate() {
+        let local = gradients_at(gauss_point(point), [1.0; 3]);
+        let jacobian: Matrix3<f64> = local.iter().zip(corners).map(|(g, x)| g * x.transpose()).sum();
+        let volume = jacobian.determinant();
+        if volume <= 0.0 {
+            return None;
+        }
+        *found = (jacobian.try_inverse()?, volume / 8.0);
+    }
+    Some(points)
 }
 
 /// Adds weight·∫ of σ(a)·ε(b) for all functions with these gradients: σ = λ tr ε 1 + 2G ε in index form.

@@ -124,7 +124,7 @@ fn no_coarser_mesh(spec: &JobSpec) -> Option<Doubt> {
     } else if !spec.scene.program.is_constant() {
         "a run with a program has no steady state to compare"
     } else if !spec.has_measured_elements() {
-        "nobody measured errors of the mesh with incompatible elements"
+        "nobody measured errors of the mesh with large strains or another element than `full`"
     } else {
         "half as many elements in each direction are too few"
     };

@@ -7,7 +7,7 @@
 //! all else equal, results depend on ω E/F and on ρ/E alone.
 
 use super::Warning;
-use crate::spec::{DiskKind, JobSpec};
+use crate::spec::{DiskKind, JobSpec, Strains};
 use crate::study::definition::Study;
 use crate::study::error::Problem;
 use crate::study::validate::assignments;
@@ -31,7 +31,8 @@ fn has_similarity(spec: &JobSpec) -> bool {
     let has_scale = scene.contact.law.coefficients().any(|coefficient| !coefficient.is_ratio);
     let is_flat = scene.pin.has_plane_base() && scene.disk.is_plane();
     let has_scale = has_scale || scene.contact.layer().is_some() || !scene.program.is_constant();
-    scene.disk.kind == DiskKind::Rigid && !has_scale && is_flat && scene.holder.is_ideal()
+    let is_linear = scene.pin.strains == Strains::Small;
+    scene.disk.kind == DiskKind::Rigid && is_linear && !has_scale && is_flat && scene.holder.is_ideal()
 }
 
 impl Study {

@@ -97,7 +97,8 @@ impl<const L: usize, R: Number> PinAudit<L, R> {
         if scale == 0.0 {
             return;
         }
-        let mut form = operator.tangent(before.p, &mut self.kp, &mut self.scratch);
+        let beta_r_s = scheme.beta_r_s;
+        let mut form = operator.damper(before.u, before.p, beta_r_s, &mut self.kp, &mut self.scratch);
         if scheme.alpha_r_per_s > 0.0 {
             self.add_mass_damping(scheme, before.p);
             form = before.p.dot(&self.kp);

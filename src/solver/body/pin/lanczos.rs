@@ -7,30 +7,31 @@ use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// What the bound adds to the largest frequency squared, relative to it.
-const MARGIN: f64 = 0.01;
+/// What a bound adds to the largest frequency squared, relative to it, unless that would take too long.
+pub const MARGIN: f64 = 0.01;
 
 /// Probability with which the bound may be too low.
 const RISK: f64 = 1e-12;
 
 /// Upper bound of the largest angular frequency \[rad/s\] of nodes with these masses. `product` multiplies
-/// by their stiffness.
+/// by their stiffness. It is at most `margin` of the largest frequency squared above it.
 ///
 /// Lanczos' method from a random start finds the largest eigenvalue λ of n degrees of freedom after k steps to (1 − ε)λ. It
 /// fails with a probability below 1.648 √n exp(−√ε (2k − 1)) (Kuczyński and Woźniakowski, SIAM J. Matrix Anal. Appl. 13, 1992,
-/// theorem 4.1). Here ε is 1 %, and k follows from a probability of 10⁻¹². The random numbers are always the same.
+/// theorem 4.1). Here ε is the margin, and k follows from a probability of 10⁻¹². The random numbers are always the same.
 pub fn omega_max_bound(
     layout: Layout,
     mut product: impl FnMut(&Field<1>, &mut Field<1>),
     masses_kg: &[f64],
     freedoms: &[Freedom],
+    margin: f64,
 ) -> f64 {
     let reduced = Reduced::new(masses_kg, freedoms);
     let size = reduced.size;
     if size == 0 {
         return 0.0;
     }
-    let steps = (libm::log(1.648 * (size as f64).sqrt()) - libm::log(RISK)) / MARGIN.sqrt();
+    let steps = (libm::log(1.648 * (size as f64).sqrt()) - libm::log(RISK)) / margin.sqrt();
     let steps = ((0.5 * (steps + 1.0)).ceil() as usize).min(size);
     let (mut u, mut force) = (Field::<1>::zeros(layout), Field::<1>::zeros(layout));
     let mut v = random(size);
@@ -61,7 +62,7 @@ pub fn omega_max_bound(
         1 => beside[i.min(j)],
         _ => 0.0,
     });
-    (tridiagonal.symmetric_eigenvalues().max() / (1.0 - MARGIN)).sqrt()
+    (tridiagonal.symmetric_eigenvalues().max() / (1.0 - margin)).sqrt()
 }
 
 /// Coordinates in which the mass is the unit matrix: one for each degree of freedom that moves by itself, one for each tie.
@@ -137,6 +138,7 @@ fn random(count: usize) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::operator::Operator;
     use super::super::{GeneralMesh, Tilt, assembled, cylinder};
     use super::*;
     use crate::solver::material::Material;
@@ -148,6 +150,7 @@ mod tests {
         let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
         let mesh = GeneralMesh::new(&cylinder([0.008, 0.009, 0.005], 5, 3), Tilt::default()).unwrap();
         let (operator, masses_kg) = assembled(&mesh, &[material]).unwrap();
+        let operator = Operator::Assembled(operator);
         let dofs = 3 * mesh.node_count();
         let mut freedoms = vec![Freedom::Free; dofs];
         let check = |freedoms: &[Freedom]| {

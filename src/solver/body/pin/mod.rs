@@ -25,13 +25,16 @@ use super::hexahedron;
 use crate::solver::error::SolverError;
 use crate::solver::field::Field;
 use crate::solver::material::Material;
-use operator::{AssembledOperator, Operator, TensorOperator};
+use crate::spec::Hyperelasticity;
+use operator::{AssembledOperator, HyperelasticOperator, Operator, TensorOperator};
 
 /// What resists the deformation of the pin.
 #[derive(Debug, Clone)]
 pub enum Stiffness {
     /// Linear elasticity with the materials of the pin.
     Elastic,
+    /// Elasticity with large strains, with the materials of the pin.
+    Hyperelastic(Hyperelasticity),
     /// The nodes are point masses joined by these springs. Only the density of the first material is used.
     Springs(AssembledOperator),
 }
@@ -71,7 +74,19 @@ impl PinBody {
                 let operator = Operator::Tensor(TensorOperator::new(block, &first));
                 (operator, block.lumped_masses_kg(first.density_kg_m3))
             }
-            (Stiffness::Elastic, PinMesh::General(general)) => assembled(general, &materials)?,
+            (Stiffness::Elastic, PinMesh::General(general)) => {
+                let (stiffness, masses_kg) = assembled(general, &materials)?;
+                (Operator::Assembled(stiffness), masses_kg)
+            }
+            (Stiffness::Hyperelastic(_), PinMesh::Block(_)) => {
+                return Err(SolverError::Mesh("large strains need a general mesh".to_owned()));
+            }
+            (Stiffness::Hyperelastic(law), PinMesh::General(general)) => {
+                let (tangent, masses_kg) = assembled(general, &materials)?;
+                let elements = HyperelasticOperator::new(general, &materials, law)
+                    .map_err(|index| inverted(general.name(index)))?;
+                (Operator::Hyperelastic { elements, tangent }, masses_kg)
+            }
             (Stiffness::Springs(springs), _) => {
                 if springs.nodes() != mesh.node_count() {
                     return Err(SolverError::Stiffness(format!(
@@ -127,6 +142,21 @@ impl PinBody {
         &self.freedoms
     }
 
+    /// The name of the first element that these displacements invert; returns `None` if there is none, and for linear elements.
+    pub fn inverted_element(&self, u: &Field<1>) -> Option<u64> {
+        let index = self.operator.inverted_element(self.mesh.layout(), u)?;
+        match &self.mesh {
+            PinMesh::Block(_) => Some(index as u64),
+            PinMesh::General(mesh) => Some(mesh.name(index)),
+        }
+    }
+
+    /// [`Self::omega_max_rad_s`] with these displacements; returns `None` if it is the same for all displacements.
+    pub fn deformed_omega_max_rad_s(&self, u: &Field<1>) -> Option<f64> {
+        let layout = self.mesh.layout();
+        self.operator.deformed_omega_max_bound(layout, &self.masses_kg, &self.freedoms, u)
+    }
+
     /// Upper bound of the largest angular frequency \[rad/s\] of the supported pin.
     pub fn omega_max_rad_s(&self) -> f64 {
         self.omega_max_rad_s
@@ -137,7 +167,7 @@ impl PinBody {
     /// # Panics
     /// If there are not three displacements per node.
     pub fn nodal_stress_pa(&self, u_m: &[f64]) -> Vec<[f64; 6]> {
-        stress::nodal_pa(&self.mesh, &self.materials, u_m)
+        stress::nodal_pa(&self.mesh, &self.materials, self.operator.law(), u_m)
     }
 
     /// K x of one lane (\[N\] for x in \[m\]), both in the order node → component. It serves inspection and tests;
@@ -151,6 +181,33 @@ impl PinBody {
         let scratch = &mut self.operator.scratch(layout, 1);
         self.operator.tangent(&Field::from_values(layout, x), &mut product, scratch);
         product.values().collect()
+    }
+
+    /// The internal forces \[N\] of displacements \[m\], both in the order node → component. It serves inspection and tests.
+    ///
+    /// # Panics
+    /// If there are not three values per node.
+    pub fn internal_n(&self, u_m: &[f64]) -> Vec<f64> {
+        let layout = self.mesh.layout();
+        let mut force = Field::<1>::zeros(layout);
+        self.operator.internal_n(
+            &Field::from_values(layout, u_m),
+            &mut force,
+            &mut self.operator.scratch(layout, 1),
+        );
+        force.values().collect()
+    }
+
+    /// The energy \[J\] that displacements \[m\] in the order node → component store; NaN if an element is inverted.
+    ///
+    /// # Panics
+    /// If there are not three values per node.
+    pub fn stored_j(&self, u_m: &[f64]) -> f64 {
+        let layout = self.mesh.layout();
+        let u = Field::<1>::from_values(layout, u_m);
+        let scratch = &mut self.operator.scratch(layout, 1);
+        let [energy_j] = self.operator.stored_j(&u, &[], &mut Field::zeros(layout), scratch);
+        energy_j
     }
 
     /// Energy \[J\] of a uniform compression by `force_n` on the contact face: F²h/(2EA).
@@ -175,7 +232,10 @@ impl PinBody {
 }
 
 /// K and the lumped masses \[kg\] of a general mesh.
-fn assembled(mesh: &GeneralMesh, materials: &[Material]) -> Result<(Operator, Vec<f64>), SolverError> {
+fn assembled(
+    mesh: &GeneralMesh,
+    materials: &[Material],
+) -> Result<(AssembledOperator, Vec<f64>), SolverError> {
     let mut masses_kg = vec![0.0; mesh.node_count()];
     let mut elements = Vec::with_capacity(mesh.elements().len());
     for (index, element) in mesh.elements().iter().enumerate() {
@@ -185,11 +245,15 @@ fn assembled(mesh: &GeneralMesh, materials: &[Material]) -> Result<(Operator, Ve
             .ok_or_else(|| SolverError::Mesh(format!("element {number} has no material")))?;
         let (stiffness, volumes) =
             hexahedron::isoparametric(material, &mesh.corners_m(element), mesh.element)
-                .ok_or_else(|| SolverError::Mesh(format!("element {number} is inverted")))?;
+                .ok_or_else(|| inverted(number))?;
         for (&node, volume) in element.nodes.iter().zip(volumes) {
             masses_kg[node] += material.density_kg_m3 * volume;
         }
         elements.push((element.nodes, stiffness));
     }
-    Ok((Operator::Assembled(AssembledOperator::of_elements(mesh.node_count(), elements)), masses_kg))
+    Ok((AssembledOperator::of_elements(mesh.node_count(), elements), masses_kg))
+}
+
+fn inverted(element: u64) -> SolverError {
+    SolverError::Mesh(format!("element {element} is inverted"))
 }

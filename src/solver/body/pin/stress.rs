@@ -3,6 +3,7 @@
 use super::{BlockMesh, GeneralMesh, PinMesh};
 use crate::solver::body::hexahedron::corner_gradients;
 use crate::solver::material::Material;
+use crate::spec::Hyperelasticity;
 use nalgebra::Matrix3;
 
 /// Names of the components of a stress, in their order.
@@ -16,19 +17,45 @@ pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 /// second order; the strains of the elements are only of first order there. So they are exact for displacements
 /// that are quadratic in the coordinates, on meshes with at least two elements in each direction.
 ///
-/// On a general mesh the stress of a node is the mean of the stresses that its elements have there.
+/// On a general mesh the stress of a node is the mean of the stresses that its elements have there. With large strains it is Cauchy's.
 ///
 /// # Panics
 /// If there are not three displacements per node.
-pub(super) fn nodal_pa(mesh: &PinMesh, materials: &[Material], u_m: &[f64]) -> Vec<[f64; 6]> {
+pub(super) fn nodal_pa(
+    mesh: &PinMesh,
+    materials: &[Material],
+    law: Option<Hyperelasticity>,
+    u_m: &[f64],
+) -> Vec<[f64; 6]> {
     assert_eq!(u_m.len(), 3 * mesh.node_count(), "three displacements per node");
     match mesh {
         PinMesh::Block(mesh) => of_block_pa(mesh, &materials[0], u_m),
-        PinMesh::General(mesh) => of_elements_pa(mesh, materials, u_m),
+        PinMesh::General(mesh) => of_elements_pa(mesh, materials, law, u_m),
     }
 }
 
-fn of_elements_pa(mesh: &GeneralMesh, materials: &[Material], u_m: &[f64]) -> Vec<[f64; 6]> {
+/// Cauchy's stress P Fᵀ/J \[Pa\] of a deformation gradient.
+fn cauchy_pa(material: &Material, law: Hyperelasticity, f: &Matrix3<f64>) -> Matrix3<f64> {
+    let (lambda, shear, j) = (material.lame_lambda_pa(), material.shear_modulus_pa(), f.determinant());
+    match law {
+        Hyperelasticity::NeoHookean => {
+            let along = 0.5 * lambda * (j * j - 1.0) - shear;
+            (f * f.transpose() * shear + Matrix3::identity() * along) / j
+        }
+        Hyperelasticity::StVenantKirchhoff => {
+            let strain = (f.transpose() * f - Matrix3::identity()) * 0.5;
+            let second = strain * (2.0 * shear) + Matrix3::identity() * (lambda * strain.trace());
+            f * second * f.transpose() / j
+        }
+    }
+}
+
+fn of_elements_pa(
+    mesh: &GeneralMesh,
+    materials: &[Material],
+    law: Option<Hyperelasticity>,
+    u_m: &[f64],
+) -> Vec<[f64; 6]> {
     let mut sums = vec![([0.0; 6], 0.0); mesh.node_count()];
     for element in mesh.elements() {
         let material = &materials[element.material];
@@ -40,8 +67,10 @@ fn of_elements_pa(mesh: &GeneralMesh, materials: &[Material], u_m: &[f64]) -> Ve
                 element.nodes.iter().zip(gradients).map(|(&other, g)| u_m[3 * other + i] * g[j]).sum::<f64>()
             });
             let dilation = lambda * gradient.trace();
-            let stress = |i: usize, j: usize| {
-                shear * (gradient[(i, j)] + gradient[(j, i)]) + if i == j { dilation } else { 0.0 }
+            let large = law.map(|law| cauchy_pa(material, law, &(gradient + Matrix3::identity())));
+            let stress = |i: usize, j: usize| match &large {
+                Some(stress) => stress[(i, j)],
+                None => shear * (gradient[(i, j)] + gradient[(j, i)]) + if i == j { dilation } else { 0.0 },
             };
             let all = [stress(0, 0), stress(1, 1), stress(2, 2), stress(0, 1), stress(1, 2), stress(0, 2)];
             let (sum, count) = &mut sums[node];
@@ -113,7 +142,7 @@ mod tests {
         let field = |[x, y, z]: [f64; 3]| [x * x + 2.0 * y * z, 3.0 * y - x * z, z * z + 0.5 * x * y];
         let u: Vec<f64> = (0..mesh.node_count()).flat_map(|node| field(mesh.coordinates_m(node))).collect();
         let (lambda, shear) = (MATERIAL.lame_lambda_pa(), MATERIAL.shear_modulus_pa());
-        for (node, found) in nodal_pa(&mesh.clone().into(), &[MATERIAL], &u).into_iter().enumerate() {
+        for (node, found) in nodal_pa(&mesh.clone().into(), &[MATERIAL], None, &u).into_iter().enumerate() {
             let [x, y, z] = mesh.coordinates_m(node);
             let dilation = lambda * (2.0 * x + 3.0 + 2.0 * z);
             let exact = [

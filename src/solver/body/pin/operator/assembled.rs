@@ -6,14 +6,13 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::{BlockIndex, Pass};
+use super::Pass;
+use super::node_scratch::NodeScratch;
 use crate::solver::body::hexahedron::ElementStiffness;
 use crate::solver::body::pin::BlockMesh;
 use crate::solver::error::SolverError;
-use crate::solver::field::{Layout, blocks_per_line};
 use crate::solver::number::{Few, LaneVector, Number};
-use crate::solver::simd::load_all;
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::Simd;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -156,7 +155,7 @@ impl AssembledOperator {
         &self,
         simd: S,
         pass: &mut impl Pass<S, R>,
-        scratch: &mut AssembledScratch<R>,
+        scratch: &mut NodeScratch<R>,
     ) {
         match scratch.lanes {
             8 => self.pass_in::<S, R, R::Eight<S>>(simd, pass, scratch),
@@ -171,57 +170,18 @@ impl AssembledOperator {
         &self,
         simd: S,
         pass: &mut impl Pass<S, R>,
-        scratch: &mut AssembledScratch<R>,
+        scratch: &mut NodeScratch<R>,
     ) {
         let pairs = R::of_both(&self.pairs, || {
             self.rounded.get_or_init(|| self.pairs.iter().map(|pair| pair.map(|k| k as f32)).collect())
         });
-        let AssembledScratch { layout, blocks, x, y, .. } = scratch;
-        let first = x.as_ptr().align_offset(ALIGNMENT);
-        let x = &mut x[first..];
-        let first = y.as_ptr().align_offset(ALIGNMENT);
-        let y = &mut y[first..];
-        let per_block = R::WIDTH / V::LANES;
-        let index = |line: usize, along: usize| BlockIndex {
-            plane: line / layout.lines_per_plane,
-            line,
-            along,
-            at: line * *blocks + along,
-        };
-        // The nodes of a line, and those of a block.
-        let nodes_of = |line: usize| {
-            line * layout.nodes_per_line..((line + 1) * layout.nodes_per_line).min(layout.nodes)
-        };
-        let in_block = |line: usize, along: usize| {
-            let nodes = nodes_of(line);
-            let start = (nodes.start + along * per_block).min(nodes.end);
-            start..(start + per_block).min(nodes.end)
-        };
-        for line in 0..layout.lines() {
-            for along in 0..*blocks {
-                let input = pass.input(simd, index(line, along).at);
-                for c in 0..3 {
-                    let row: R::Row = input[c].to_array();
-                    for (slot, node) in in_block(line, along).enumerate() {
-                        x[(3 * node + c) * V::LANES..][..V::LANES]
-                            .copy_from_slice(&row.as_ref()[slot * V::LANES..][..V::LANES]);
-                    }
-                }
-            }
-        }
-        y.fill(R::default());
-        for line in 0..layout.lines() {
-            self.complete::<S, R, V>(simd, pairs, x, y, nodes_of(line));
-            for along in 0..*blocks {
-                let mut rows = [R::Row::default(); 3];
-                for (slot, node) in in_block(line, along).enumerate() {
-                    for (c, row) in rows.iter_mut().enumerate() {
-                        row.as_mut()[slot * V::LANES..][..V::LANES]
-                            .copy_from_slice(&y[(3 * node + c) * V::LANES..][..V::LANES]);
-                    }
-                }
-                pass.output(simd, index(line, along), load_all::<R, S>(simd, &rows));
-            }
+        scratch.read(simd, pass);
+        scratch.clear();
+        for line in 0..scratch.layout.lines() {
+            let nodes = scratch.nodes_of(line);
+            let [x, y] = scratch.fields();
+            self.complete::<S, R, V>(simd, pairs, x, y, nodes);
+            scratch.give(simd, line, pass);
         }
     }
 
@@ -284,48 +244,11 @@ impl AssembledOperator {
     }
 }
 
-/// Number of bytes of a cache line. Vectors begin at its boundaries.
-const ALIGNMENT: usize = 64;
-
-/// Scratch of a pass.
-#[derive(Debug)]
-pub(super) struct AssembledScratch<R: Number> {
-    /// Number of lanes. It is no constant of the code, which is compiled once for all lane counts.
-    lanes: usize,
-    layout: Layout,
-    /// Blocks per line.
-    blocks: usize,
-    /// x: node → component → lane.
-    x: Vec<R>,
-    /// Kx in the same order.
-    y: Vec<R>,
-}
-
-impl<R: Number> AssembledScratch<R> {
-    pub fn new(layout: Layout, lanes: usize) -> Self {
-        let numbers = || vec![R::default(); 3 * lanes * layout.nodes + R::WIDTH];
-        Self {
-            lanes,
-            layout,
-            blocks: blocks_per_line::<R>(layout.nodes_per_line, lanes),
-            x: numbers(),
-            y: numbers(),
-        }
-    }
-}
-
-impl<R: Number> Clone for AssembledScratch<R> {
-    /// Makes fresh scratch.
-    fn clone(&self) -> Self {
-        Self::new(self.layout, self.lanes)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::{Operator, Scratch};
     use super::*;
-    use crate::solver::field::{Field, FieldOf};
+    use crate::solver::field::{Field, FieldOf, Layout};
 
     /// Protects: entries at the same place are added, and rows are applied lane by lane.
     #[test]

@@ -6,17 +6,23 @@
 //! * [`TensorOperator`] – K of a uniform elastic block as a sum of tensor products. It is the fastest form.
 //! * [`AssembledOperator`] – any symmetric K, by pairs of nodes. It serves general meshes, discrete springs and masses, and the
 //!   tests compare the other form with it.
+//! * [`HyperelasticOperator`] – elastic elements with large strains.
 //!
-//! Both are linear: forces are K (u + β_R p), the energy is ½u·Ku, and there is no history. They give K x block by block in one pass over
-//! the mesh, which is the only product with K.
+//! The first two are linear: forces are K (u + β_R p), the energy is ½u·Ku, and there is no history. They give K x block by block in one
+//! pass over the mesh, which is the only product with K. With large strains the forces of damping and deformation are those of the
+//! displacements u + β_R p: the damper is β_R times the stiffness of the deformed pin, to the first order in β_R p.
 
 mod assembled;
+mod gradient;
+mod hyperelastic;
+mod node_scratch;
 mod tensor;
 #[cfg(test)]
 mod tests;
 
 pub use assembled::AssembledOperator;
-use assembled::AssembledScratch;
+pub use hyperelastic::HyperelasticOperator;
+use node_scratch::NodeScratch;
 pub use tensor::TensorOperator;
 use tensor::TensorScratch;
 
@@ -26,6 +32,7 @@ use crate::solver::body::Freedom;
 use crate::solver::field::{Block, Field, FieldOf, Layout, add_slots, blocks_per_line};
 use crate::solver::number::Number;
 use crate::solver::simd::{dispatch, load_all};
+use crate::spec::Hyperelasticity;
 use fearless_simd::{Simd, prelude::*};
 
 /// The forms of what resists the deformation.
@@ -37,6 +44,13 @@ pub enum Operator {
     Assembled(AssembledOperator),
     /// Springs between point masses, by pairs of nodes.
     Springs(AssembledOperator),
+    /// Elastic elements with large strains.
+    Hyperelastic {
+        /// The elements.
+        elements: HyperelasticOperator,
+        /// The stiffness of the undeformed pin.
+        tangent: AssembledOperator,
+    },
 }
 
 /// Position of a block.
@@ -63,11 +77,11 @@ pub(in crate::solver) trait Moving<S: Simd, R: Number> {
     fn take(&mut self, simd: S, index: BlockIndex, force: [R::Vector<S>; 3]);
 }
 
-/// The input and the output of a product with K, block by block.
+/// The input and the output of a pass over the mesh, block by block.
 trait Pass<S: Simd, R: Number> {
     /// The three components of x in block `at`.
     fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3];
-    /// Takes the three components of K x in a block. The inputs of its plane and of those below are not read again,
+    /// Takes the three components of the internal forces of x in a block; those of linear elements are K x. The inputs of its plane and of those below are not read again,
     /// so it may overwrite them. Planes come in their order.
     fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]);
 }
@@ -84,7 +98,7 @@ pub struct Scratch<R: Number = f64> {
 #[derive(Debug, Clone)]
 enum ScratchOf<R: Number> {
     Tensor(TensorScratch<R>),
-    Assembled(AssembledScratch<R>),
+    Nodes(NodeScratch<R>),
 }
 
 impl Operator {
@@ -92,8 +106,8 @@ impl Operator {
     pub fn scratch<R: Number>(&self, layout: Layout, lanes: usize) -> Scratch<R> {
         let form = match self {
             Self::Tensor(_) => ScratchOf::Tensor(TensorScratch::new(layout, lanes)),
-            Self::Assembled(_) | Self::Springs(_) => {
-                ScratchOf::Assembled(AssembledScratch::new(layout, lanes))
+            Self::Assembled(_) | Self::Springs(_) | Self::Hyperelastic { .. } => {
+                ScratchOf::Nodes(NodeScratch::new(layout, lanes))
             }
         };
         Scratch {
@@ -103,10 +117,18 @@ impl Operator {
         }
     }
 
+    /// The law of elements with large strains; returns `None` for linear forces.
+    pub fn law(&self) -> Option<Hyperelasticity> {
+        match self {
+            Self::Hyperelastic { elements, .. } => Some(elements.law()),
+            Self::Tensor(_) | Self::Assembled(_) | Self::Springs(_) => None,
+        }
+    }
+
     /// Number of numbers that all elements together keep of their past, in each lane.
     pub fn history_len(&self) -> usize {
         match self {
-            Self::Tensor(_) | Self::Assembled(_) | Self::Springs(_) => 0,
+            Self::Tensor(_) | Self::Assembled(_) | Self::Springs(_) | Self::Hyperelastic { .. } => 0,
         }
     }
 
@@ -129,10 +151,10 @@ impl Operator {
             self.history_len() * scratch.lanes,
             "the history of another operator"
         );
-        self.pass(simd, &mut Linear(nodes), scratch);
+        self.pass(simd, &mut Damped(nodes), scratch);
     }
 
-    /// The energy \[J\] that the deformation stores, in each lane. It overwrites `work`.
+    /// The energy \[J\] that the deformation stores, in each lane; NaN if an element is inverted. It overwrites `work`.
     ///
     /// # Panics
     /// If the scratch is that of another operator.
@@ -148,20 +170,101 @@ impl Operator {
             self.history_len() * scratch.lanes,
             "the history of another operator"
         );
+        if let Self::Hyperelastic { elements, .. } = self {
+            let (energy_j, inverted) = elements.state_of(u, work, scratch);
+            return std::array::from_fn(
+                |lane| {
+                    if inverted[lane].is_some() { f64::NAN } else { energy_j[lane] }
+                },
+            );
+        }
         self.tangent(u, work, scratch).map(|form| 0.5 * form)
     }
 
-    /// Upper bound of the largest angular frequency \[rad/s\] of nodes with these masses. It must hold for every deformation of a run,
-    /// because a run has one time step.
+    /// The internal forces \[N\] of displacements at rest.
+    ///
+    /// # Panics
+    /// If the scratch is that of another operator.
+    pub fn internal_n<const L: usize, R: Number>(
+        &self,
+        u: &FieldOf<L, R>,
+        force: &mut FieldOf<L, R>,
+        scratch: &mut Scratch<R>,
+    ) {
+        let mut forms = std::mem::take(&mut scratch.forms);
+        let mut product = Product { x: u.blocks(), y: force.blocks_mut(), forms: &mut forms };
+        dispatch!(simd => self.pass(simd, &mut product, scratch));
+        scratch.forms = forms;
+    }
+
+    /// Computes the forces of the damper over β_R, and their product with p. Those of linear elements are K p.
+    ///
+    /// # Panics
+    /// If the scratch is that of another operator.
+    pub fn damper<const L: usize, R: Number>(
+        &self,
+        u: &FieldOf<L, R>,
+        p: &FieldOf<L, R>,
+        beta_r_s: f64,
+        force: &mut FieldOf<L, R>,
+        scratch: &mut Scratch<R>,
+    ) -> [f64; L] {
+        if !matches!(self, Self::Hyperelastic { .. }) {
+            return self.tangent(p, force, scratch);
+        }
+        if beta_r_s == 0.0 {
+            force.blocks_mut().fill(Block::default());
+            return [0.0; L];
+        }
+        let mut unmoved = force.clone();
+        self.internal_n(u, &mut unmoved, scratch);
+        self.internal_n(&moved(u, beta_r_s, p), force, scratch);
+        change_over(beta_r_s, force, &unmoved);
+        force.clear_padding();
+        p.dot(force)
+    }
+
+    /// The number of the first element that these displacements invert; returns `None` if there is none, and for linear elements.
+    pub fn inverted_element(&self, layout: Layout, u: &Field<1>) -> Option<usize> {
+        let Self::Hyperelastic { elements, .. } = self else { return None };
+        elements.state_of(u, &mut Field::zeros(layout), &mut self.scratch(layout, 1)).1[0]
+    }
+
+    /// [`Self::omega_max_bound`] of the pin with these displacements; returns `None` if that is the same for all displacements.
+    pub fn deformed_omega_max_bound(
+        &self,
+        layout: Layout,
+        masses_kg: &[f64],
+        freedoms: &[Freedom],
+        u: &Field<1>,
+    ) -> Option<f64> {
+        let Self::Hyperelastic { .. } = self else { return None };
+        let mut scratch = self.scratch(layout, 1);
+        let mut unmoved = Field::zeros(layout);
+        self.internal_n(u, &mut unmoved, &mut scratch);
+        // The displacements of the two states differ by 10⁻⁷ of the largest one, which changes the stiffness by as little. Their forces are
+        // known to rounding, so that the difference has eight digits.
+        let largest = |field: &Field<1>| field.values().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let scale = 1.0e-7 * largest(u).max(f64::MIN_POSITIVE);
+        let product = |x: &Field<1>, y: &mut Field<1>| {
+            let factor = scale / largest(x).max(f64::MIN_POSITIVE);
+            self.internal_n(&moved(u, factor, x), y, &mut scratch);
+            change_over(factor, y, &unmoved);
+        };
+        Some(lanczos::omega_max_bound(layout, product, masses_kg, freedoms, CHECK_MARGIN))
+    }
+
+    /// Upper bound of the largest angular frequency \[rad/s\] of nodes with these masses. A run has one time step. Where large strains
+    /// change the bound, it is that of the undeformed pin, and runs check it.
     pub fn omega_max_bound(&self, layout: Layout, masses_kg: &[f64], freedoms: &[Freedom]) -> f64 {
         match self {
             Self::Tensor(block) => {
                 omega_max_bound(block.mesh(), &block.element(), block.material().density_kg_m3, freedoms)
             }
-            Self::Assembled(_) => {
+            Self::Assembled(_) | Self::Hyperelastic { .. } => {
                 let mut scratch = self.scratch(layout, 1);
                 let product = |x: &Field<1>, y: &mut Field<1>| _ = self.tangent(x, y, &mut scratch);
-                lanczos::omega_max_bound(layout, product, masses_kg, freedoms)
+                lanczos::omega_max_bound(layout, product, masses_kg, freedoms, lanczos::MARGIN)
             }
             Self::Springs(springs) => omega_max_bound_of_springs(springs.entries(), masses_kg, freedoms),
         }
@@ -172,6 +275,7 @@ impl Operator {
         match self {
             Self::Tensor(block) => AssembledOperator::of_block(block.mesh(), &block.element()).rows(),
             Self::Assembled(operator) | Self::Springs(operator) => operator.rows(),
+            Self::Hyperelastic { tangent, .. } => tangent.rows(),
         }
     }
 
@@ -198,7 +302,22 @@ impl Operator {
     }
 
     fn multiply<R: Number>(&self, product: &mut Product<'_, R>, scratch: &mut Scratch<R>) {
-        dispatch!(simd => self.pass(simd, product, scratch));
+        dispatch!(simd => self.pass_tangent(simd, product, scratch));
+    }
+
+    /// The internal forces of x in one pass over the mesh.
+    ///
+    /// # Panics
+    /// If the scratch is that of another operator.
+    #[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+    #[inline(always)]
+    fn pass<S: Simd, R: Number>(&self, simd: S, pass: &mut impl Pass<S, R>, scratch: &mut Scratch<R>) {
+        match (self, &mut scratch.form) {
+            (Self::Hyperelastic { elements, .. }, ScratchOf::Nodes(nodes)) => {
+                elements.pass(simd, pass, nodes);
+            }
+            _ => self.pass_tangent(simd, pass, scratch),
+        }
     }
 
     /// K x in one pass over the mesh.
@@ -207,22 +326,58 @@ impl Operator {
     /// If the scratch is that of another operator.
     #[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
     #[inline(always)]
-    fn pass<S: Simd, R: Number>(&self, simd: S, pass: &mut impl Pass<S, R>, scratch: &mut Scratch<R>) {
+    fn pass_tangent<S: Simd, R: Number>(
+        &self,
+        simd: S,
+        pass: &mut impl Pass<S, R>,
+        scratch: &mut Scratch<R>,
+    ) {
         match (self, &mut scratch.form) {
             (Self::Tensor(operator), ScratchOf::Tensor(scratch)) => operator.pass(simd, pass, scratch),
-            (Self::Assembled(operator) | Self::Springs(operator), ScratchOf::Assembled(scratch)) => {
-                operator.pass(simd, pass, scratch);
-            }
+            (
+                Self::Assembled(operator)
+                | Self::Springs(operator)
+                | Self::Hyperelastic { tangent: operator, .. },
+                ScratchOf::Nodes(scratch),
+            ) => operator.pass(simd, pass, scratch),
             _ => panic!("the scratch of another operator"),
         }
     }
 }
 
-/// The forces K (u + β_R p) on nodes.
-struct Linear<'a, M>(&'a mut M);
+/// What the bound of a deformed pin adds to its largest frequency squared. A check of the time step takes some 70 passes with it.
+const CHECK_MARGIN: f64 = 0.05;
+
+/// u + a x.
+fn moved<const L: usize, R: Number>(u: &FieldOf<L, R>, a: f64, x: &FieldOf<L, R>) -> FieldOf<L, R> {
+    let (a, mut moved) = (R::from_f64(a), u.clone());
+    for (moved, x) in moved.blocks_mut().iter_mut().zip(x.blocks()) {
+        for c in 0..3 {
+            for i in 0..R::WIDTH {
+                moved.0[c][i] += a * x.0[c][i];
+            }
+        }
+    }
+    moved
+}
+
+/// Makes a force its change over a.
+fn change_over<const L: usize, R: Number>(a: f64, force: &mut FieldOf<L, R>, before: &FieldOf<L, R>) {
+    let scale = R::from_f64(1.0 / a);
+    for (force, before) in force.blocks_mut().iter_mut().zip(before.blocks()) {
+        for c in 0..3 {
+            for i in 0..R::WIDTH {
+                force.0[c][i] = scale * (force.0[c][i] - before.0[c][i]);
+            }
+        }
+    }
+}
+
+/// The forces of the displacements u + β_R p on nodes.
+struct Damped<'a, M>(&'a mut M);
 
 #[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
-impl<S: Simd, R: Number, M: Moving<S, R>> Pass<S, R> for Linear<'_, M> {
+impl<S: Simd, R: Number, M: Moving<S, R>> Pass<S, R> for Damped<'_, M> {
     #[inline(always)]
     fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3] {
         let mut strained = self.0.u(simd, at);
@@ -240,6 +395,7 @@ impl<S: Simd, R: Number, M: Moving<S, R>> Pass<S, R> for Linear<'_, M> {
     }
 }
 
+/// Fields of a pass.
 struct Product<'a, R: Number> {
     x: &'a [Block<R>],
     y: &'a mut [Block<R>],

@@ -1,0 +1,469 @@
+//! Elastic elements with large strains: trilinear hexahedra, 2 × 2 × 2 Gauss points, forces from the undeformed mesh (total Lagrange).
+//!
+//! With the deformation gradient F, J = det F, C = FᵀF, E = ½(C − 1) and Lamé's λ and G, the energy per undeformed volume is
+//!
+//! ```text
+//! St Venant–Kirchhoff   W = ½λ (tr E)² + G E:E
+//! neo-Hookean           W = ½G (tr C − 3 − 2 ln J) + ¼λ (J² − 1 − 2 ln J)
+//! ```
+//!
+//! (J. Bonet and R. D. Wood, *Nonlinear Continuum Mechanics for Finite Element Analysis*, 2008, ch. 6; the last term as in J. C. Simo and
+//! T. J. R. Hughes, *Computational Inelasticity*, 1998, ch. 9). For small strains both are Hooke's law. The force on a node is the
+//! derivative of Σ W dV by its displacement. A selective element takes the last term of the neo-Hookean law at the ratio θ of the
+//! element's volumes, and the first term of the other law at the mean of tr E: then a nearly incompressible material does not lock
+//! (J. C. Nagtegaal, D. M. Parks and J. R. Rice, CMAME 4, 1974).
+//!
+//! A vector holds the lanes of one or of several elements. The sum at a node is over its elements in their order, so that a lane has
+//! the same bits for every number of lanes.
+
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
+use super::gradient::{Tensor, cofactor, combined, green_strain, product};
+use super::node_scratch::NodeScratch;
+use super::{Pass, Product, Scratch, ScratchOf};
+use crate::solver::body::hexahedron::gauss_jacobians;
+use crate::solver::body::pin::GeneralMesh;
+use crate::solver::field::FieldOf;
+use crate::solver::material::Material;
+use crate::solver::number::Number;
+use crate::solver::simd::dispatch;
+use crate::spec::{Element, Hyperelasticity};
+use fearless_simd::{Simd, f64x8, prelude::*};
+
+/// Slots of a vector.
+const WIDTH: usize = 8;
+
+const DOUBLE: &str = "large strains are computed in double precision";
+
+/// Numbers of a Gauss point: the derivatives ∂ξ_a/∂X_j \[1/m\] in the unit cube, and its volume \[m³\].
+const OF_POINT: usize = 10;
+
+/// Places of the numbers of an element behind those of its points: λ \[Pa\], G \[Pa\] and 1/V \[1/m³\].
+const LAMBDA: usize = 8 * OF_POINT;
+const SHEAR: usize = LAMBDA + 1;
+const INVERSE_VOLUME: usize = LAMBDA + 2;
+const NUMBERS: usize = LAMBDA + 3;
+
+/// Weights of the near and of the far corner at a Gauss point, along each axis.
+const NEAR: f64 = 0.5 + 0.288_675_134_594_812_9;
+const FAR: f64 = 0.5 - 0.288_675_134_594_812_9;
+
+/// Elements with large strains.
+#[derive(Debug, Clone)]
+pub struct HyperelasticOperator {
+    law: Hyperelasticity,
+    is_selective: bool,
+    nodes: Vec<[u32; 8]>,
+    /// The numbers of eight elements side by side: group → number → element of the group. The last group is filled up with its last
+    /// element.
+    numbers: Vec<[f64; WIDTH]>,
+}
+
+/// The vectors of one value per corner.
+type Corners<S> = [[f64x8<S>; 3]; 8];
+
+/// Derivatives along the axes of the unit cube, at the four Gauss points across each axis: axis → point → component.
+type Slopes<S> = [[[f64x8<S>; 3]; 4]; 3];
+
+impl HyperelasticOperator {
+    /// The elements of a mesh.
+    ///
+    /// # Errors
+    /// The number of an element that is inverted.
+    pub fn new(mesh: &GeneralMesh, materials: &[Material], law: Hyperelasticity) -> Result<Self, usize> {
+        let count = mesh.elements().len();
+        let mut numbers = vec![[0.0; WIDTH]; count.div_ceil(WIDTH) * NUMBERS];
+        for slot in 0..count.next_multiple_of(WIDTH) {
+            let index = slot.min(count - 1);
+            let element = &mesh.elements()[index];
+            let material = &materials[element.material];
+            let mut of_element = [0.0; NUMBERS];
+            let mut volume = 0.0;
+            let points = gauss_jacobians(&mesh.corners_m(element)).ok_or(index)?;
+            for (point, (inverse, volume_m3)) in points.iter().enumerate() {
+                let own = &mut of_element[point * OF_POINT..][..OF_POINT];
+                for (place, number) in own[..9].iter_mut().enumerate() {
+                    *number = inverse[(place % 3, place / 3)];
+                }
+                own[9] = *volume_m3;
+                volume += volume_m3;
+            }
+            of_element[LAMBDA] = material.lame_lambda_pa();
+            of_element[SHEAR] = material.shear_modulus_pa();
+            of_element[INVERSE_VOLUME] = 1.0 / volume;
+            for (number, value) in of_element.into_iter().enumerate() {
+                numbers[slot / WIDTH * NUMBERS + number][slot % WIDTH] = value;
+            }
+        }
+        let is_selective = mesh.element == Element::Selective;
+        let nodes = mesh.elements().iter().map(|element| element.nodes.map(|node| node as u32)).collect();
+        Ok(Self { law, is_selective, nodes, numbers })
+    }
+
+    /// The law.
+    pub fn law(&self) -> Hyperelasticity {
+        self.law
+    }
+
+    /// The internal forces of displacements, in one pass over the mesh.
+    ///
+    /// # Panics
+    /// In single precision.
+    #[inline(always)]
+    pub(super) fn pass<S: Simd, R: Number>(
+        &self,
+        simd: S,
+        pass: &mut impl Pass<S, R>,
+        scratch: &mut NodeScratch<R>,
+    ) {
+        scratch.read(simd, pass);
+        scratch.clear();
+        let lanes = scratch.lanes;
+        let [x, y] = scratch.fields();
+        let (Some(x), Some(y)) = (R::doubles(x), R::doubles(y)) else { panic!("{DOUBLE}") };
+        // One function for all passes: it is long.
+        self.add_forces(lanes, x, y);
+        for line in 0..scratch.layout.lines() {
+            scratch.give(simd, line, pass);
+        }
+    }
+
+    fn add_forces(&self, lanes: usize, x: &[f64], y: &mut [f64]) {
+        dispatch!(simd => self.add_forces_in(simd, lanes, x, y));
+    }
+
+    #[inline(always)]
+    fn add_forces_in<S: Simd>(&self, simd: S, lanes: usize, x: &[f64], y: &mut [f64]) {
+        for first in (0..self.nodes.len()).step_by(WIDTH / lanes) {
+            let mut corners = [[f64x8::splat(simd, 0.0); 3]; 8];
+            self.corners(first, lanes, x, &mut corners);
+            match lanes {
+                8 => self.force(
+                    simd,
+                    #[inline(always)]
+                    |number| f64x8::splat(simd, self.of_one(first, number)),
+                    &mut corners,
+                ),
+                1 => self.force(
+                    simd,
+                    #[inline(always)]
+                    |number| f64x8::load_array_ref(simd, self.of_all(first, number)),
+                    &mut corners,
+                ),
+                lanes => self.force(
+                    simd,
+                    #[inline(always)]
+                    |number| self.of_some(simd, first, number, lanes),
+                    &mut corners,
+                ),
+            }
+            self.add(first, &corners, lanes, y);
+        }
+    }
+
+    /// The stored energy \[J\] of displacements in each lane, and the first element that is inverted. It overwrites `work`.
+    ///
+    /// # Panics
+    /// If the scratch is that of another operator, and in single precision.
+    pub(super) fn state_of<const L: usize, R: Number>(
+        &self,
+        u: &FieldOf<L, R>,
+        work: &mut FieldOf<L, R>,
+        scratch: &mut Scratch<R>,
+    ) -> ([f64; WIDTH], [Option<usize>; WIDTH]) {
+        let Scratch { form, forms, .. } = scratch;
+        let ScratchOf::Nodes(nodes) = form else { panic!("the scratch of another operator") };
+        let pass = Product { x: u.blocks(), y: work.blocks_mut(), forms };
+        dispatch!(simd => nodes.read(simd, &pass));
+        let [x, _] = nodes.fields();
+        let Some(x) = R::doubles(x) else { panic!("{DOUBLE}") };
+        self.state(L, x)
+    }
+
+    fn state(&self, lanes: usize, x: &[f64]) -> ([f64; WIDTH], [Option<usize>; WIDTH]) {
+        let (mut energy_j, mut inverted) = ([0.0; WIDTH], [None; WIDTH]);
+        for first in (0..self.nodes.len()).step_by(WIDTH / lanes) {
+            let (energies, volumes) = dispatch!(simd => {
+                let mut u = [[f64x8::splat(simd, 0.0); 3]; 8];
+                self.corners(first, lanes, x, &mut u);
+                self.energy(simd, |number| self.of_some(simd, first, number, lanes), &u)
+            });
+            for slot in 0..WIDTH {
+                let (element, lane) = (first + slot / lanes, slot % lanes);
+                if element < self.nodes.len() {
+                    energy_j[lane] += energies[slot];
+                    if inverted[lane].is_none() && volumes[slot] <= 0.0 {
+                        inverted[lane] = Some(element);
+                    }
+                }
+            }
+        }
+        (energy_j, inverted)
+    }
+
+    fn of_all(&self, first: usize, number: usize) -> &[f64; WIDTH] {
+        &self.numbers[first / WIDTH * NUMBERS + number]
+    }
+
+    #[inline(always)]
+    fn of_one(&self, element: usize, number: usize) -> f64 {
+        self.of_all(element, number)[element % WIDTH]
+    }
+
+    #[inline(always)]
+    fn of_some<S: Simd>(&self, simd: S, first: usize, number: usize, lanes: usize) -> f64x8<S> {
+        let all = self.of_all(first, number);
+        let row: [f64; WIDTH] = std::array::from_fn(|slot| all[first % WIDTH + slot / lanes]);
+        f64x8::load_array(simd, row)
+    }
+
+    /// The displacements of the corners of a group of elements.
+    #[inline(always)]
+    fn corners<S: Simd>(&self, first: usize, lanes: usize, x: &[f64], u: &mut Corners<S>) {
+        let simd = u[0][0].simd;
+        for corner in 0..8 {
+            for c in 0..3 {
+                if lanes == WIDTH {
+                    let node = self.nodes[first][corner] as usize;
+                    u[corner][c] = f64x8::from_slice(simd, &x[(3 * node + c) * WIDTH..][..WIDTH]);
+                    continue;
+                }
+                let mut row = [0.0; WIDTH];
+                for (nodes, own) in self.nodes[first..].iter().zip(row.chunks_exact_mut(lanes)) {
+                    own.copy_from_slice(&x[(3 * nodes[corner] as usize + c) * lanes..][..lanes]);
+                }
+                u[corner][c] = f64x8::load_array(simd, row);
+            }
+        }
+    }
+
+    /// Adds the forces of a group to its nodes, element after element.
+    #[inline(always)]
+    fn add<S: Simd>(&self, first: usize, force: &Corners<S>, lanes: usize, y: &mut [f64]) {
+        if lanes == WIDTH {
+            for (corner, &node) in self.nodes[first].iter().enumerate() {
+                for c in 0..3 {
+                    let sum = &mut y[(3 * node as usize + c) * WIDTH..][..WIDTH];
+                    (f64x8::from_slice(force[corner][c].simd, sum) + force[corner][c]).store_slice(sum);
+                }
+            }
+            return;
+        }
+        let mut rows = [[[0.0; WIDTH]; 3]; 8];
+        for corner in 0..8 {
+            for c in 0..3 {
+                force[corner][c].store_array(&mut rows[corner][c]);
+            }
+        }
+        for (place, nodes) in self.nodes[first..].iter().take(WIDTH / lanes).enumerate() {
+            for (corner, &node) in nodes.iter().enumerate() {
+                for c in 0..3 {
+                    let sums = &mut y[(3 * node as usize + c) * lanes..][..lanes];
+                    for (sum, value) in sums.iter_mut().zip(&rows[corner][c][place * lanes..]) {
+                        *sum += value;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Replaces the displacements of the corners by the forces on them: Σ P ∂N/∂X dV with the first Piola–Kirchhoff stress P = ∂W/∂F.
+    #[inline(always)]
+    fn force<S: Simd>(&self, simd: S, number: impl Fn(usize) -> f64x8<S>, corners: &mut Corners<S>) {
+        let all = |value: f64| f64x8::splat(simd, value);
+        let mut slopes: Slopes<S> = [[[all(0.0); 3]; 4]; 3];
+        slopes_of(simd, corners, &mut slopes);
+        let (lambda, shear) = (number(LAMBDA), number(SHEAR));
+        let mean = if self.is_selective { Some(self.mean(simd, &number, &slopes)) } else { None };
+        let mut sums: Slopes<S> = [[[all(0.0); 3]; 4]; 3];
+        for point in 0..8 {
+            let f = deformation(simd, &number, &slopes, point);
+            let p = match self.law {
+                Hyperelasticity::NeoHookean => {
+                    let (cofactor, j) = cofactor(&f);
+                    let volume = mean.unwrap_or(j);
+                    let along = all(0.5) * lambda * (volume - all(1.0) / volume) - shear / j;
+                    combined(shear, &f, along, &cofactor)
+                }
+                Hyperelasticity::StVenantKirchhoff => {
+                    let strain = green_strain(simd, &f);
+                    let trace = mean.unwrap_or(strain[0][0] + strain[1][1] + strain[2][2]);
+                    let (double, pressure) = (shear + shear, lambda * trace);
+                    let mut stress = strain;
+                    for i in 0..3 {
+                        for k in 0..3 {
+                            stress[i][k] = double * strain[i][k];
+                        }
+                        stress[i][i] += pressure;
+                    }
+                    product(&f, &stress)
+                }
+            };
+            let weight = number(point * OF_POINT + 9);
+            for a in 0..3 {
+                let at = point * OF_POINT + 3 * a;
+                let g = [number(at) * weight, number(at + 1) * weight, number(at + 2) * weight];
+                let sum = &mut sums[a][across(point, a)];
+                for i in 0..3 {
+                    sum[i] += p[i][0] * g[0] + p[i][1] * g[1] + p[i][2] * g[2];
+                }
+            }
+        }
+        spread(simd, &mut sums, corners);
+    }
+
+    /// The energy \[J\] of each slot, and the smallest J of its points.
+    #[inline(always)]
+    fn energy<S: Simd>(
+        &self,
+        simd: S,
+        number: impl Fn(usize) -> f64x8<S>,
+        u: &Corners<S>,
+    ) -> ([f64; WIDTH], [f64; WIDTH]) {
+        let all = |value: f64| f64x8::splat(simd, value);
+        let mut slopes: Slopes<S> = [[[all(0.0); 3]; 4]; 3];
+        slopes_of(simd, u, &mut slopes);
+        let (lambda, shear) = (number(LAMBDA).to_array(), number(SHEAR).to_array());
+        let mean = self.mean(simd, &number, &slopes).to_array();
+        let (mut energy_j, mut smallest) = ([0.0; WIDTH], [f64::INFINITY; WIDTH]);
+        let mut volume = [0.0; WIDTH];
+        for point in 0..8 {
+            let f = deformation(simd, &number, &slopes, point);
+            let (_, j) = cofactor(&f);
+            let strain = green_strain(simd, &f);
+            let trace = strain[0][0] + strain[1][1] + strain[2][2];
+            let mut square = all(0.0);
+            for row in &strain {
+                for value in row {
+                    square += *value * *value;
+                }
+            }
+            let (j, trace, square): ([f64; WIDTH], [f64; WIDTH], [f64; WIDTH]) =
+                (j.to_array(), trace.to_array(), square.to_array());
+            let weight: [f64; WIDTH] = number(point * OF_POINT + 9).to_array();
+            for slot in 0..WIDTH {
+                smallest[slot] = f64::min(smallest[slot], j[slot]);
+                volume[slot] += weight[slot];
+                let dilation = |at: f64| match self.law {
+                    Hyperelasticity::NeoHookean => {
+                        0.25 * lambda[slot] * (at * at - 1.0 - 2.0 * libm::log(at))
+                    }
+                    Hyperelasticity::StVenantKirchhoff => 0.5 * lambda[slot] * at * at,
+                };
+                let (at, distortion) = match self.law {
+                    Hyperelasticity::NeoHookean => {
+                        (j[slot], shear[slot] * (trace[slot] - libm::log(j[slot])))
+                    }
+                    Hyperelasticity::StVenantKirchhoff => (trace[slot], shear[slot] * square[slot]),
+                };
+                let own = if self.is_selective { 0.0 } else { dilation(at) };
+                energy_j[slot] += weight[slot] * (distortion + own);
+                if self.is_selective && point == 7 {
+                    energy_j[slot] += volume[slot] * dilation(mean[slot]);
+                }
+            }
+        }
+        (energy_j, smallest)
+    }
+
+    /// The mean over an element of what the term of the law with λ depends on: J, or tr E.
+    #[inline(always)]
+    fn mean<S: Simd>(&self, simd: S, number: &impl Fn(usize) -> f64x8<S>, slopes: &Slopes<S>) -> f64x8<S> {
+        let mut sum = f64x8::splat(simd, 0.0);
+        for point in 0..8 {
+            let f = deformation(simd, number, slopes, point);
+            let value = match self.law {
+                Hyperelasticity::NeoHookean => cofactor(&f).1,
+                Hyperelasticity::StVenantKirchhoff => {
+                    let strain = green_strain(simd, &f);
+                    strain[0][0] + strain[1][1] + strain[2][2]
+                }
+            };
+            sum += number(point * OF_POINT + 9) * value;
+        }
+        sum * number(INVERSE_VOLUME)
+    }
+}
+
+/// The two axes across one, ascending.
+const ACROSS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
+
+/// The number, of the four across an axis, of a Gauss point or of an edge at a corner.
+#[inline(always)]
+fn across(point: usize, axis: usize) -> usize {
+    let [b, c] = ACROSS[axis];
+    (point >> b & 1) | (point >> c & 1) << 1
+}
+
+/// The derivatives of the displacements along the axes of the unit cube.
+#[inline(always)]
+fn slopes_of<S: Simd>(simd: S, u: &Corners<S>, slopes: &mut Slopes<S>) {
+    for axis in 0..3 {
+        for corner in 0..8 {
+            if corner >> axis & 1 == 0 {
+                for c in 0..3 {
+                    slopes[axis][across(corner, axis)][c] = u[corner | 1 << axis][c] - u[corner][c];
+                }
+            }
+        }
+        between(simd, &mut slopes[axis]);
+    }
+}
+
+/// The forces on the corners of what is at the Gauss points. It is the transpose of [`slopes_of`].
+#[inline(always)]
+fn spread<S: Simd>(simd: S, sums: &mut Slopes<S>, force: &mut Corners<S>) {
+    for axis in 0..3 {
+        between(simd, &mut sums[axis]);
+    }
+    for corner in 0..8 {
+        for c in 0..3 {
+            let mut total = f64x8::splat(simd, 0.0);
+            for axis in 0..3 {
+                let value = sums[axis][across(corner, axis)][c];
+                if corner >> axis & 1 == 0 {
+                    total -= value;
+                } else {
+                    total += value;
+                }
+            }
+            force[corner][c] = total;
+        }
+    }
+}
+
+/// Goes from four edges to the Gauss points between them, or back: the weights are symmetric.
+#[inline(always)]
+fn between<S: Simd>(simd: S, values: &mut [[f64x8<S>; 3]; 4]) {
+    let (near, far) = (f64x8::splat(simd, NEAR), f64x8::splat(simd, FAR));
+    for [a, b] in [[0, 1], [2, 3], [0, 2], [1, 3]] {
+        for c in 0..3 {
+            let (first, second) = (values[a][c], values[b][c]);
+            values[a][c] = near * first + far * second;
+            values[b][c] = far * first + near * second;
+        }
+    }
+}
+
+/// F at a Gauss point.
+#[inline(always)]
+fn deformation<S: Simd>(
+    simd: S,
+    number: &impl Fn(usize) -> f64x8<S>,
+    slopes: &Slopes<S>,
+    point: usize,
+) -> Tensor<S> {
+    let mut f = [[f64x8::splat(simd, 0.0); 3]; 3];
+    let one = f64x8::splat(simd, 1.0);
+    for j in 0..3 {
+        let at = point * OF_POINT + j;
+        let [x, y, z] = [number(at), number(at + 3), number(at + 6)];
+        for i in 0..3 {
+            f[i][j] = slopes[0][across(point, 0)][i] * x
+                + slopes[1][across(point, 1)][i] * y
+                + slopes[2][across(point, 2)][i] * z;
+        }
+        f[j][j] += one;
+    }
+    f
+}
