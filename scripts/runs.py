@@ -19,23 +19,23 @@ def build():
     WORK.mkdir(parents=True, exist_ok=True)
 
 
-def tribosweep(*arguments, database="docs.db"):
-    """Runs the program in the work folder and returns what it prints."""
+def tribosweep(*arguments, database="docs.db", check=True):
+    """Runs the program in the work folder and returns what it prints. Without `check` it may fail."""
     environment = dict(os.environ, TRIBOSWEEP_DB=str(WORK / database))
     done = subprocess.run(
-        [PROGRAM, *arguments], cwd=WORK, env=environment, check=True, stdout=subprocess.PIPE, text=True
+        [PROGRAM, *arguments], cwd=WORK, env=environment, check=check, stdout=subprocess.PIPE, text=True
     )
     return done.stdout
 
 
-def sweep(study, database="docs.db", options=()):
-    """Runs a study (a path below the repository, or a dictionary with a name) and returns its rows."""
+def sweep(study, database="docs.db", options=(), fails=False):
+    """Runs a study (a path below the repository, or a dictionary with a name) and returns its rows. With `fails`, jobs may fail."""
     if isinstance(study, dict):
         path = WORK / f"{study['name']}.json"
         path.write_text(json.dumps(study, indent=2))
     else:
         path = ROOT / study
-    tribosweep("run", str(path), *options, database=database)
+    tribosweep("run", str(path), *options, database=database, check=not fails)
     lines = tribosweep("export", str(path), "--all", "--format", "json", database=database).splitlines()
     rows = [json.loads(line) for line in lines]
     for row in rows:

@@ -92,7 +92,7 @@ pub fn core_elements(across: usize) -> usize {
     across.saturating_sub(2 * rings)
 }
 
-/// The pin: a linear elastic body meshed with trilinear hexahedra.
+/// The pin: an elastic body meshed with trilinear hexahedra.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Pin {

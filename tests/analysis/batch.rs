@@ -120,10 +120,10 @@ fn companions_and_interruptions_change_nothing_with_other_laws() {
                 contact.length_m = Some([1.0e-6, 1.0e-5][i % 2]);
                 contact.mu_of_speed =
                     MuOfSpeed(vec![[0.0, 0.5], [[0.01, 0.1][i % 2], 0.3], [1.0, [0.3, 0.4][i % 2]]]);
-                job.run.limit_s = job.run.limit_s.min(0.002);
+                job.run.limit_s = job.run.limit_s.min(0.001);
             }
             companions_change_nothing_in(&jobs);
-            resumed_jobs_have_the_same_bits(&jobs, &[2], &[5]);
+            resumed_jobs_have_the_same_bits(&jobs, &[2], &[1]);
         }
     }
 }
@@ -162,7 +162,7 @@ fn companions_and_interruptions_change_nothing_on_general_meshes() {
             }
         }
         companions_change_nothing_in(&jobs);
-        resumed_jobs_have_the_same_bits(&jobs, &[2], &PAUSES);
+        resumed_jobs_have_the_same_bits(&jobs, &[2], &PAUSES[..1]);
     }
 }
 
@@ -261,7 +261,7 @@ fn nothing_changes_where_an_accuracy_is_asked(precision: Precision) {
         assert!(records.iter().any(|record| is_such(&record)), "{elements:?}, reached: {reached}");
     }
     companions_change_nothing_in(&jobs);
-    resumed_jobs_have_the_same_bits(&jobs, &[0, 3], &PAUSES);
+    resumed_jobs_have_the_same_bits(&jobs, &[0, 3], &PAUSES[..1]);
 }
 
 /// Protects: the same with both, a coarser mesh and single precision.

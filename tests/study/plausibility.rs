@@ -46,6 +46,12 @@ fn large_strains_are_named() {
         &["1.01 %", "holds for small strains"],
     );
     assert_eq!(warnings(r#"{ "scene": { "load": { "force_n": 1790 } } }"#), []);
+    // Large strains are computed where they are asked for, up to those that few materials bear.
+    let finite = |force_n: u32| {
+        format!(r#"{{ "scene": {{ "load": {{ "force_n": {force_n} }}, "pin": {{ "strains": "finite" }} }} }}"#)
+    };
+    assert_eq!(warnings(&finite(30_000)), []);
+    assert_contains(&warnings(&finite(100_000))[0].to_string(), &["55.6 %", "few materials follow"]);
     // A soft pin: what the study gives is named, and not the load that it leaves out.
     let soft = only(r#""pin": { "young_modulus_pa": 1e7 }"#).to_string();
     assert_contains(&soft, &["1:43: scene.pin.young_modulus_pa = 1e7: the mean strain", "1.67 %"]);
