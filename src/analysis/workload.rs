@@ -3,7 +3,7 @@
 use super::error::{JobError, check_step, step_count};
 use crate::solver::Model;
 use crate::solver::scheme::Bound;
-use crate::spec::{DiskKind, JobSpec, Precision, StabilityMethod, elasticity};
+use crate::spec::{DiskKind, JobSpec, Precision, StabilityMethod, Strains, elasticity};
 use crate::stability::Structure;
 use serde::Serialize;
 
@@ -20,6 +20,9 @@ pub struct Workload {
     /// Whether the pin has the stiffness of a general mesh.
     #[serde(skip)]
     pub is_general: bool,
+    /// Whether its strains may be large.
+    #[serde(skip)]
+    pub has_large_strains: bool,
     /// Number of nodes of the disk; 0 if it is rigid.
     pub disk_nodes: usize,
     /// Stages of the disk in a time step; 0 if it is rigid.
@@ -43,6 +46,12 @@ const SINGLE: [f64; 2] = [0.6, 0.5];
 
 /// Time of a step of a node of a general mesh, relative to that of a block: measured on 9828 nodes (docs/scene.md).
 const GENERAL_TIME: f64 = 3.0;
+
+/// Time of a step with large strains, relative to that of a general mesh with small ones: 4.5 on 10051 nodes and 4.7 on 567 (docs/design.md).
+const LARGE_STRAINS_TIME: f64 = 4.6;
+
+/// Additional memory \[byte\] of an element with large strains in a model: 83 numbers and eight nodes. A mesh has about as many elements as nodes.
+const LARGE_STRAINS_ELEMENT_BYTES: f64 = 83.0 * 8.0 + 8.0 * 4.0;
 
 /// Additional memory \[byte\] of a node of a general mesh in a model: 14 pairs of nodes with 9 numbers and an index.
 const GENERAL_NODE_BYTES: f64 = 14.0 * (9.0 * 8.0 + 4.0);
@@ -88,6 +97,7 @@ impl Workload {
             precision,
             pin_nodes: model.mesh().node_count(),
             is_general: model.mesh().block().is_none(),
+            has_large_strains: model.pin().operator().law().is_some(),
             disk_nodes: disk.map_or(0, |disk| disk.mesh().node_count()),
             disk_stages: disk.map_or(0, |disk| disk.stages().count()),
             time_step_s: model.time_step_s(),
@@ -121,6 +131,7 @@ impl Workload {
             precision: numerics.precision,
             pin_nodes: pin.node_count() as usize,
             is_general: !pin.is_plain_block(),
+            has_large_strains: pin.strains == Strains::Finite,
             disk_nodes,
             disk_stages,
             time_step_s: numerics.time_step_s.unwrap_or(numerics.safety_factor * limit_s),
@@ -149,7 +160,11 @@ impl Workload {
     pub fn node_steps(&self, simulated_s: f64) -> f64 {
         let disk = DISK_STAGE * (self.disk_nodes * self.disk_stages) as f64;
         let [time, _] = self.over_double();
-        let general = if self.is_general { GENERAL_TIME } else { 1.0 };
+        let general = match (self.is_general, self.has_large_strains) {
+            (_, true) => GENERAL_TIME * LARGE_STRAINS_TIME,
+            (true, false) => GENERAL_TIME,
+            (false, false) => 1.0,
+        };
         time * (general * self.pin_nodes as f64 + disk) * (simulated_s / self.time_step_s).ceil().max(1.0)
     }
 
@@ -175,7 +190,9 @@ impl Workload {
         let [pin, disk] = [(PIN_NODE_BYTES, self.pin_nodes), (DISK_NODE_BYTES, self.disk_nodes)]
             .map(|([model, lane], nodes)| (model + lane * lanes) * nodes as f64);
         let general = if self.is_general { GENERAL_NODE_BYTES * self.pin_nodes as f64 } else { 0.0 };
-        pin + general + disk + jobs as f64 * OBSERVED_STEP_BYTES * observation_s / self.time_step_s
+        let large =
+            if self.has_large_strains { LARGE_STRAINS_ELEMENT_BYTES * self.pin_nodes as f64 } else { 0.0 };
+        pin + general + large + disk + jobs as f64 * OBSERVED_STEP_BYTES * observation_s / self.time_step_s
     }
 
     /// Memory \[byte\] that complex modes of steady sliding take.

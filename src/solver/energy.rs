@@ -22,6 +22,8 @@
 //! A contact layer stores ∫N dδ, which is taken from the work −N·Δz of its nodes. The rest of that work is what its implicit
 //! law dissipates, and remains in the contact loss.
 //!
+//! With large strains the stored energy is W(u) instead of ½uKu, and the balance has an error of the second order in Δt.
+//!
 //! The energies are a sum over bodies, supports and the interface. The works of the interface and of the load are
 //! summed in every step, because they need boundary nodes only. The stored energies and the damping of bodies need
 //! products with K. They are evaluated in an audit every `interval` steps, and the work of damping is the sample
@@ -46,7 +48,7 @@ use serde::{Deserialize, Serialize};
 pub struct Energies {
     /// Kinetic energy ½vMv − (γ/4)Δt²aMa.
     pub kinetic_j: f64,
-    /// Elastic energy ½uKu, with that of springs of a holder and of a contact layer.
+    /// Elastic energy of the pin and the disk, with that of springs of a holder and of a contact layer.
     pub elastic_j: f64,
     /// Energy stored at the start.
     pub initial_j: f64,

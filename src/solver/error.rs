@@ -79,7 +79,8 @@ pub enum SolverError {
     /// An element of a pin with large strains is turned inside out; there is no result.
     #[error(
         "element {element} is inverted at t = {time_s:.6e} s (step {step}): the strains are larger than this mesh can have; \
-         look for an edge that is squeezed or folded, and give a lower load, a coarser mesh there or a stiffer material"
+         look for an edge that is squeezed or folded, and give a lower load, a coarser mesh there, a stiffer material or a smaller \
+         time step"
     )]
     Inverted {
         /// The name of the element.
@@ -91,8 +92,8 @@ pub enum SolverError {
     },
     /// The pin has deformed so much that the time step is above the stability limit.
     #[error(
-        "at t = {time_s:.6e} s the pin has deformed so that the stability limit is {limit_s:e} s, below the time step of \
-         {time_step_s:e} s; give numerics.safety_factor = {safety_factor:.2} or less"
+        "at t = {time_s:.6e} s the pin has deformed so that the stability limit is {limit_s:.3e} s, below the time step of \
+         {time_step_s:.3e} s; give numerics.time_step_s = {advised_s:.2e} or less, or numerics.safety_factor = {safety_factor:.2e} or less"
     )]
     StepOutgrown {
         /// The time at which it was found \[s\].
@@ -101,7 +102,9 @@ pub enum SolverError {
         limit_s: f64,
         /// The time step \[s\].
         time_step_s: f64,
-        /// A safety factor with which the step would be far enough below this limit.
+        /// A time step that is far enough below this limit \[s\].
+        advised_s: f64,
+        /// The safety factor of that time step.
         safety_factor: f64,
     },
     /// The run diverged; there is no result.

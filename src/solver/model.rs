@@ -188,7 +188,8 @@ impl Model {
         self.time_step_limit_s
     }
 
-    /// The stability limit \[s\] of the pin with these displacements; returns `None` if it is the same for all displacements.
+    /// The stability limit \[s\] of the pin with these displacements, at most 2.5 % too high and never too low; returns `None` if the
+    /// displacements do not change it.
     pub fn deformed_limit_s(&self, u: &Field<1>) -> Option<f64> {
         let omega_max_rad_s = self.pin.deformed_omega_max_rad_s(u)?;
         let Scheme { beta2, beta_r_s, alpha_r_per_s, .. } = self.scheme;

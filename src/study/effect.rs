@@ -1,12 +1,13 @@
 //! What of a job has no effect on its result. Its key and the list of its inputs leave that out.
 
-use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, StabilityMethod, Start};
+use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, StabilityMethod, Start, Strains};
 
 /// The fields of a job that have no effect, as JSON pointers; what is below such a field has none either. Coefficients that the friction
 /// law does not use are no fields of [`crate::spec::Contact::in_use`].
 pub(super) fn without_effect(spec: &JobSpec) -> Vec<&'static str> {
     let has_run = spec.stability != StabilityMethod::Modes;
-    let rules: [(bool, &[&str]); 10] = [
+    let rules: [(bool, &[&str]); 11] = [
+        (spec.scene.pin.strains == Strains::Small, &["/scene/pin/hyperelasticity"]),
         (spec.scene.pin.shape == Shape::Cylinder, &["/scene/pin/size_m/0", "/scene/pin/size_m/1"]),
         // The file has them.
         (spec.scene.pin.shape == Shape::Mesh, &["/scene/pin/elements", "/scene/clamp"]),

@@ -120,7 +120,7 @@ fn companions_and_interruptions_change_nothing_with_other_laws() {
                 contact.length_m = Some([1.0e-6, 1.0e-5][i % 2]);
                 contact.mu_of_speed =
                     MuOfSpeed(vec![[0.0, 0.5], [[0.01, 0.1][i % 2], 0.3], [1.0, [0.3, 0.4][i % 2]]]);
-                job.run.limit_s = job.run.limit_s.min(0.001);
+                job.run.limit_s = job.run.limit_s.min(0.0012);
             }
             companions_change_nothing_in(&jobs);
             resumed_jobs_have_the_same_bits(&jobs, &[2], &[1]);

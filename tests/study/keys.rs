@@ -240,6 +240,17 @@ fn the_time_step_counts_where_modes_depend_on_it() {
     assert_ne!(with(0.6, 0.7), with(0.6, 0.35));
 }
 
+/// Protects: a law of large strains is no part of a job with small ones, so that a grid can compare both.
+#[test]
+fn a_law_without_large_strains_does_not_change_the_key() {
+    let pin = |fields: &str| key_of(&format!(r#"{{ "scene": {{ "pin": {{ {fields} }} }} }}"#));
+    let law = r#""hyperelasticity": "st_venant_kirchhoff""#;
+    assert_eq!(pin(law), pin(""));
+    let finite = r#""strains": "finite""#;
+    assert_ne!(pin(&format!("{finite}, {law}")), pin(finite));
+    assert_ne!(pin(finite), pin(""));
+}
+
 /// Protects: a start and a method of stability that have no effect are no part of a job: a mesh that is too coarse for a
 /// coarser one, and scenes without eigenvalues.
 #[test]

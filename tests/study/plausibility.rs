@@ -48,7 +48,9 @@ fn large_strains_are_named() {
     assert_eq!(warnings(r#"{ "scene": { "load": { "force_n": 1790 } } }"#), []);
     // Large strains are computed where they are asked for, up to those that few materials bear.
     let finite = |force_n: u32| {
-        format!(r#"{{ "scene": {{ "load": {{ "force_n": {force_n} }}, "pin": {{ "strains": "finite" }} }} }}"#)
+        format!(
+            r#"{{ "scene": {{ "load": {{ "force_n": {force_n} }}, "pin": {{ "strains": "finite" }} }} }}"#
+        )
     };
     assert_eq!(warnings(&finite(30_000)), []);
     assert_contains(&warnings(&finite(100_000))[0].to_string(), &["55.6 %", "few materials follow"]);

@@ -519,7 +519,7 @@ fn programs_that_are_no_tables_are_refused() {
     assert_contains(&of("", r#", "run": { "window_s": 1 }"#), &["run.window_s = 1: expected a length"]);
 }
 
-/// Protects: what holds for small strains alone is refused with large ones, and a law of large strains without them.
+/// Protects: what holds for small strains alone is refused with large ones.
 #[test]
 fn large_strains_refuse_what_is_linear() {
     for (pin, other, field) in [
@@ -535,8 +535,6 @@ fn large_strains_refuse_what_is_linear() {
         };
         assert_contains(&refusal(&text), &[field, "with scene.pin.strains = finite"]);
     }
-    let law = r#"{ "scene": { "pin": { "hyperelasticity": "st_venant_kirchhoff" } } }"#;
-    assert_contains(&refusal(law), &["scene.pin.hyperelasticity = st_venant_kirchhoff: expected absent"]);
 }
 
 /// Protects: an accuracy is a share of μ*, and is asked for only where there are meshes to go through and a steady state.

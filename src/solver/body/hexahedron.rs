@@ -118,6 +118,16 @@ pub fn gauss_jacobians(corners: &[Vector3<f64>; 8]) -> Option<[(Matrix3<f64>, f6
     Some(points)
 }
 
+/// Gradients ∂N_a/∂x \[1/m\] of the eight shape functions, and the volume \[m³\], of each Gauss point of a hexahedron with these corners \[m\].
+/// `None` if the element is inverted at one of them.
+pub fn gauss_gradients(corners: &[Vector3<f64>; 8]) -> Option<[([Vector3<f64>; 8], f64); 8]> {
+    let points = gauss_jacobians(corners)?;
+    Some(std::array::from_fn(|point| {
+        let (inverse, volume) = points[point];
+        (gradients_at(gauss_point(point), [1.0; 3]).map(|g| inverse * g), volume)
+    }))
+}
+
 /// Adds weight·∫ of σ(a)·ε(b) for all functions with these gradients: σ = λ tr ε 1 + 2G ε in index form.
 fn add_products<const ROWS: usize, const COLUMNS: usize>(
     sums: &mut SMatrix<f64, ROWS, COLUMNS>,

@@ -77,9 +77,10 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
                 percent(speed_m_s / wave_m_s),
                 short(wave_m_s)
             ),
-            help: "a node that sticks moves with the disk and sends out a wave with a strain of that order, which is \
-                   outside the linear model"
-                .to_owned(),
+            help: format!(
+                "a node that sticks moves with the disk and sends out a wave with a strain of that order{}",
+                if is_linear { ", which is outside the linear model" } else { "" }
+            ),
         });
     }
 

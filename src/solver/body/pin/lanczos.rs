@@ -7,19 +7,28 @@ use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// What a bound adds to the largest frequency squared, relative to it, unless that would take too long.
-pub const MARGIN: f64 = 0.01;
+/// What the bound adds to the largest frequency squared, relative to it.
+const MARGIN: f64 = 0.01;
 
 /// Probability with which the bound may be too low.
 const RISK: f64 = 1e-12;
 
-/// Upper bound of the largest angular frequency \[rad/s\] of nodes with these masses. `product` multiplies
-/// by their stiffness. It is at most `margin` of the largest frequency squared above it.
+/// Upper bound of the largest angular frequency \[rad/s\] of nodes with these masses. `product` multiplies by their stiffness.
+pub fn omega_max_bound(
+    layout: Layout,
+    product: impl FnMut(&Field<1>, &mut Field<1>),
+    masses_kg: &[f64],
+    freedoms: &[Freedom],
+) -> f64 {
+    (largest_square(layout, product, masses_kg, freedoms, MARGIN) / (1.0 - MARGIN)).sqrt()
+}
+
+/// The largest angular frequency squared \[rad²/s²\]. It may be too low by the share `margin`, and is never too high.
 ///
 /// Lanczos' method from a random start finds the largest eigenvalue λ of n degrees of freedom after k steps to (1 − ε)λ. It
 /// fails with a probability below 1.648 √n exp(−√ε (2k − 1)) (Kuczyński and Woźniakowski, SIAM J. Matrix Anal. Appl. 13, 1992,
 /// theorem 4.1). Here ε is the margin, and k follows from a probability of 10⁻¹². The random numbers are always the same.
-pub fn omega_max_bound(
+pub fn largest_square(
     layout: Layout,
     mut product: impl FnMut(&Field<1>, &mut Field<1>),
     masses_kg: &[f64],
@@ -62,7 +71,7 @@ pub fn omega_max_bound(
         1 => beside[i.min(j)],
         _ => 0.0,
     });
-    (tridiagonal.symmetric_eigenvalues().max() / (1.0 - margin)).sqrt()
+    tridiagonal.symmetric_eigenvalues().max()
 }
 
 /// Coordinates in which the mass is the unit matrix: one for each degree of freedom that moves by itself, one for each tie.

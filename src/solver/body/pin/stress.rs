@@ -1,10 +1,10 @@
 //! Stress at the nodes of a pin, for output. No time step uses it.
 
 use super::{BlockMesh, GeneralMesh, PinMesh};
-use crate::solver::body::hexahedron::corner_gradients;
+use crate::solver::body::hexahedron::{corner_gradients, gauss_gradients};
 use crate::solver::material::Material;
-use crate::spec::Hyperelasticity;
-use nalgebra::Matrix3;
+use crate::spec::{Element, Hyperelasticity};
+use nalgebra::{Matrix3, Vector3};
 
 /// Names of the components of a stress, in their order.
 pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
@@ -34,19 +34,41 @@ pub(super) fn nodal_pa(
     }
 }
 
-/// Cauchy's stress P Fᵀ/J \[Pa\] of a deformation gradient.
-fn cauchy_pa(material: &Material, law: Hyperelasticity, f: &Matrix3<f64>) -> Matrix3<f64> {
-    let (lambda, shear, j) = (material.lame_lambda_pa(), material.shear_modulus_pa(), f.determinant());
+/// Stress \[Pa\] of a displacement gradient: Hooke's for small strains, and Cauchy's P Fᵀ/J. The term with λ is that of `dilation`, which is
+/// tr ε or tr E, or J − 1 of the neo-Hookean law.
+fn stress_pa(
+    material: &Material,
+    law: Option<Hyperelasticity>,
+    h: &Matrix3<f64>,
+    dilation: f64,
+) -> Matrix3<f64> {
+    let (lambda, shear) = (material.lame_lambda_pa(), material.shear_modulus_pa());
+    let f = h + Matrix3::identity();
     match law {
-        Hyperelasticity::NeoHookean => {
-            let along = 0.5 * lambda * (j * j - 1.0) - shear;
-            (f * f.transpose() * shear + Matrix3::identity() * along) / j
+        None => (h + h.transpose()) * shear + Matrix3::identity() * (lambda * dilation),
+        Some(Hyperelasticity::NeoHookean) => {
+            let along = 0.5 * lambda * (1.0 + dilation - 1.0 / (1.0 + dilation));
+            (f * f.transpose() - Matrix3::identity()) * (shear / f.determinant())
+                + Matrix3::identity() * along
         }
-        Hyperelasticity::StVenantKirchhoff => {
-            let strain = (f.transpose() * f - Matrix3::identity()) * 0.5;
-            let second = strain * (2.0 * shear) + Matrix3::identity() * (lambda * strain.trace());
-            f * second * f.transpose() / j
+        Some(Hyperelasticity::StVenantKirchhoff) => {
+            let second = green_strain(h) * (2.0 * shear) + Matrix3::identity() * (lambda * dilation);
+            f * second * f.transpose() / f.determinant()
         }
+    }
+}
+
+/// E = ½(H + Hᵀ + HᵀH).
+fn green_strain(h: &Matrix3<f64>) -> Matrix3<f64> {
+    (h + h.transpose() + h.transpose() * h) * 0.5
+}
+
+/// What the term of a law with λ depends on: tr ε, tr E or J − 1.
+fn dilation(law: Option<Hyperelasticity>, h: &Matrix3<f64>) -> f64 {
+    match law {
+        None => h.trace(),
+        Some(Hyperelasticity::NeoHookean) => (h + Matrix3::identity()).determinant() - 1.0,
+        Some(Hyperelasticity::StVenantKirchhoff) => green_strain(h).trace(),
     }
 }
 
@@ -59,19 +81,27 @@ fn of_elements_pa(
     let mut sums = vec![([0.0; 6], 0.0); mesh.node_count()];
     for element in mesh.elements() {
         let material = &materials[element.material];
-        let (lambda, shear) = (material.lame_lambda_pa(), material.shear_modulus_pa());
-        let Some(gradients) = corner_gradients(&mesh.corners_m(element)) else { continue };
-        for (&node, gradients) in element.nodes.iter().zip(&gradients) {
-            // ∂u_i/∂x_j
-            let gradient = Matrix3::<f64>::from_fn(|i, j| {
+        let corners = mesh.corners_m(element);
+        let Some(gradients) = corner_gradients(&corners) else { continue };
+        // ∂u_i/∂x_j
+        let gradient = |gradients: &[Vector3<f64>; 8]| {
+            Matrix3::<f64>::from_fn(|i, j| {
                 element.nodes.iter().zip(gradients).map(|(&other, g)| u_m[3 * other + i] * g[j]).sum::<f64>()
+            })
+        };
+        // A selective element has one for all its points.
+        let mean =
+            (mesh.element == Element::Selective).then(|| gauss_gradients(&corners)).flatten().map(|points| {
+                let volume: f64 = points.iter().map(|(_, volume)| volume).sum();
+                let part = |(gradients, volume): &([Vector3<f64>; 8], f64)| {
+                    volume * dilation(law, &gradient(gradients))
+                };
+                points.iter().map(part).sum::<f64>() / volume
             });
-            let dilation = lambda * gradient.trace();
-            let large = law.map(|law| cauchy_pa(material, law, &(gradient + Matrix3::identity())));
-            let stress = |i: usize, j: usize| match &large {
-                Some(stress) => stress[(i, j)],
-                None => shear * (gradient[(i, j)] + gradient[(j, i)]) + if i == j { dilation } else { 0.0 },
-            };
+        for (&node, gradients) in element.nodes.iter().zip(&gradients) {
+            let h = gradient(gradients);
+            let found = stress_pa(material, law, &h, mean.unwrap_or_else(|| dilation(law, &h)));
+            let stress = |i: usize, j: usize| found[(i, j)];
             let all = [stress(0, 0), stress(1, 1), stress(2, 2), stress(0, 1), stress(1, 2), stress(0, 2)];
             let (sum, count) = &mut sums[node];
             for (sum, value) in sum.iter_mut().zip(all) {

@@ -1,4 +1,6 @@
-//! Deformation gradients and what follows from them, in vectors.
+//! Displacement gradients H = ∂u/∂X and what follows from them, in vectors.
+//!
+//! Everything is formed from H and not from F = 1 + H: its rounding is then in proportion to the strain, however small that is.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -7,58 +9,53 @@ use fearless_simd::{Simd, f64x8, prelude::*};
 /// A tensor.
 pub(super) type Tensor<S> = [[f64x8<S>; 3]; 3];
 
-/// ∂J/∂F, and J.
+/// ∂J/∂F − 1 = (tr H) 1 − Hᵀ + cof H, and J − 1 = tr H + ½((tr H)² − tr H²) + det H.
 #[inline(always)]
-pub(super) fn cofactor<S: Simd>(f: &Tensor<S>) -> (Tensor<S>, f64x8<S>) {
-    let mut cofactor = *f;
+pub(super) fn cofactor<S: Simd>(h: &Tensor<S>) -> (Tensor<S>, f64x8<S>) {
+    let mut cofactor = *h;
     for i in 0..3 {
         let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
         for j in 0..3 {
             let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
-            cofactor[i][j] = f[i1][j1] * f[i2][j2] - f[i1][j2] * f[i2][j1];
+            cofactor[i][j] = h[i1][j1] * h[i2][j2] - h[i1][j2] * h[i2][j1];
         }
     }
-    let j = f[0][0] * cofactor[0][0] + f[0][1] * cofactor[0][1] + f[0][2] * cofactor[0][2];
-    (cofactor, j)
+    let trace = h[0][0] + h[1][1] + h[2][2];
+    // The trace of cof H is the second invariant.
+    let second = cofactor[0][0] + cofactor[1][1] + cofactor[2][2];
+    let third = h[0][0] * cofactor[0][0] + h[0][1] * cofactor[0][1] + h[0][2] * cofactor[0][2];
+    let mut change = cofactor;
+    for i in 0..3 {
+        for j in 0..3 {
+            change[i][j] = cofactor[i][j] - h[j][i];
+        }
+        change[i][i] += trace;
+    }
+    (change, trace + second + third)
 }
 
-/// E = ½(FᵀF − 1).
+/// E = ½(H + Hᵀ + HᵀH).
 #[inline(always)]
-pub(super) fn green_strain<S: Simd>(simd: S, f: &Tensor<S>) -> Tensor<S> {
-    let (half, one) = (f64x8::splat(simd, 0.5), f64x8::splat(simd, 1.0));
-    let mut strain = *f;
+pub(super) fn green_strain<S: Simd>(simd: S, h: &Tensor<S>) -> Tensor<S> {
+    let half = f64x8::splat(simd, 0.5);
+    let mut strain = *h;
     for i in 0..3 {
         for j in i..3 {
-            let mut sum = f[0][i] * f[0][j] + f[1][i] * f[1][j] + f[2][i] * f[2][j];
-            if i == j {
-                sum -= one;
-            }
-            strain[i][j] = half * sum;
+            let square = h[0][i] * h[0][j] + h[1][i] * h[1][j] + h[2][i] * h[2][j];
+            strain[i][j] = half * (h[i][j] + h[j][i] + square);
             strain[j][i] = strain[i][j];
         }
     }
     strain
 }
 
-/// a A + b B.
+/// (1 + H) S.
 #[inline(always)]
-pub(super) fn combined<S: Simd>(a: f64x8<S>, of_a: &Tensor<S>, b: f64x8<S>, of_b: &Tensor<S>) -> Tensor<S> {
-    let mut sum = *of_a;
+pub(super) fn deformed<S: Simd>(h: &Tensor<S>, stress: &Tensor<S>) -> Tensor<S> {
+    let mut product = *stress;
     for i in 0..3 {
         for j in 0..3 {
-            sum[i][j] = a * of_a[i][j] + b * of_b[i][j];
-        }
-    }
-    sum
-}
-
-/// A B.
-#[inline(always)]
-pub(super) fn product<S: Simd>(a: &Tensor<S>, b: &Tensor<S>) -> Tensor<S> {
-    let mut product = *a;
-    for i in 0..3 {
-        for j in 0..3 {
-            product[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
+            product[i][j] += h[i][0] * stress[0][j] + h[i][1] * stress[1][j] + h[i][2] * stress[2][j];
         }
     }
     product

@@ -18,7 +18,7 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::gradient::{Tensor, cofactor, combined, green_strain, product};
+use super::gradient::{Tensor, cofactor, deformed, green_strain};
 use super::node_scratch::NodeScratch;
 use super::{Pass, Product, Scratch, ScratchOf};
 use crate::solver::body::hexahedron::gauss_jacobians;
@@ -277,26 +277,37 @@ impl HyperelasticOperator {
         let mean = if self.is_selective { Some(self.mean(simd, &number, &slopes)) } else { None };
         let mut sums: Slopes<S> = [[[all(0.0); 3]; 4]; 3];
         for point in 0..8 {
-            let f = deformation(simd, &number, &slopes, point);
+            let h = gradient(simd, &number, &slopes, point);
             let p = match self.law {
                 Hyperelasticity::NeoHookean => {
-                    let (cofactor, j) = cofactor(&f);
-                    let volume = mean.unwrap_or(j);
-                    let along = all(0.5) * lambda * (volume - all(1.0) / volume) - shear / j;
-                    combined(shear, &f, along, &cofactor)
+                    // P = G (F − (∂J/∂F)/J) + ½λ (θ − 1/θ) ∂J/∂F, with 1 + j = J, 1 + t = θ and ∂J/∂F = 1 + K.
+                    let (k, j) = cofactor(&h);
+                    let t = mean.unwrap_or(j);
+                    let along = all(0.5) * lambda * (t * (all(2.0) + t) / (all(1.0) + t));
+                    let over_j = shear / (all(1.0) + j);
+                    let of_h = over_j + over_j * j;
+                    let of_k = along - over_j;
+                    let of_one = over_j * j + along;
+                    let mut p = k;
+                    for i in 0..3 {
+                        for n in 0..3 {
+                            p[i][n] = of_h * h[i][n] + of_k * k[i][n];
+                        }
+                        p[i][i] += of_one;
+                    }
+                    p
                 }
                 Hyperelasticity::StVenantKirchhoff => {
-                    let strain = green_strain(simd, &f);
-                    let trace = mean.unwrap_or(strain[0][0] + strain[1][1] + strain[2][2]);
+                    let mut stress = green_strain(simd, &h);
+                    let trace = mean.unwrap_or(stress[0][0] + stress[1][1] + stress[2][2]);
                     let (double, pressure) = (shear + shear, lambda * trace);
-                    let mut stress = strain;
                     for i in 0..3 {
                         for k in 0..3 {
-                            stress[i][k] = double * strain[i][k];
+                            stress[i][k] = double * stress[i][k];
                         }
                         stress[i][i] += pressure;
                     }
-                    product(&f, &stress)
+                    deformed(&h, &stress)
                 }
             };
             let weight = number(point * OF_POINT + 9);
@@ -328,9 +339,9 @@ impl HyperelasticOperator {
         let (mut energy_j, mut smallest) = ([0.0; WIDTH], [f64::INFINITY; WIDTH]);
         let mut volume = [0.0; WIDTH];
         for point in 0..8 {
-            let f = deformation(simd, &number, &slopes, point);
-            let (_, j) = cofactor(&f);
-            let strain = green_strain(simd, &f);
+            let h = gradient(simd, &number, &slopes, point);
+            let (_, j) = cofactor(&h);
+            let strain = green_strain(simd, &h);
             let trace = strain[0][0] + strain[1][1] + strain[2][2];
             let mut square = all(0.0);
             for row in &strain {
@@ -342,17 +353,18 @@ impl HyperelasticOperator {
                 (j.to_array(), trace.to_array(), square.to_array());
             let weight: [f64; WIDTH] = number(point * OF_POINT + 9).to_array();
             for slot in 0..WIDTH {
-                smallest[slot] = f64::min(smallest[slot], j[slot]);
+                smallest[slot] = f64::min(smallest[slot], 1.0 + j[slot]);
                 volume[slot] += weight[slot];
+                // `at` is J − 1, or tr E.
                 let dilation = |at: f64| match self.law {
                     Hyperelasticity::NeoHookean => {
-                        0.25 * lambda[slot] * (at * at - 1.0 - 2.0 * libm::log(at))
+                        0.25 * lambda[slot] * (at * (2.0 + at) - 2.0 * libm::log1p(at))
                     }
                     Hyperelasticity::StVenantKirchhoff => 0.5 * lambda[slot] * at * at,
                 };
                 let (at, distortion) = match self.law {
                     Hyperelasticity::NeoHookean => {
-                        (j[slot], shear[slot] * (trace[slot] - libm::log(j[slot])))
+                        (j[slot], shear[slot] * (trace[slot] - libm::log1p(j[slot])))
                     }
                     Hyperelasticity::StVenantKirchhoff => (trace[slot], shear[slot] * square[slot]),
                 };
@@ -366,16 +378,16 @@ impl HyperelasticOperator {
         (energy_j, smallest)
     }
 
-    /// The mean over an element of what the term of the law with λ depends on: J, or tr E.
+    /// The mean over an element of what the term of the law with λ depends on: J − 1, or tr E.
     #[inline(always)]
     fn mean<S: Simd>(&self, simd: S, number: &impl Fn(usize) -> f64x8<S>, slopes: &Slopes<S>) -> f64x8<S> {
         let mut sum = f64x8::splat(simd, 0.0);
         for point in 0..8 {
-            let f = deformation(simd, number, slopes, point);
+            let h = gradient(simd, number, slopes, point);
             let value = match self.law {
-                Hyperelasticity::NeoHookean => cofactor(&f).1,
+                Hyperelasticity::NeoHookean => cofactor(&h).1,
                 Hyperelasticity::StVenantKirchhoff => {
-                    let strain = green_strain(simd, &f);
+                    let strain = green_strain(simd, &h);
                     strain[0][0] + strain[1][1] + strain[2][2]
                 }
             };
@@ -445,25 +457,23 @@ fn between<S: Simd>(simd: S, values: &mut [[f64x8<S>; 3]; 4]) {
     }
 }
 
-/// F at a Gauss point.
+/// H at a Gauss point.
 #[inline(always)]
-fn deformation<S: Simd>(
+fn gradient<S: Simd>(
     simd: S,
     number: &impl Fn(usize) -> f64x8<S>,
     slopes: &Slopes<S>,
     point: usize,
 ) -> Tensor<S> {
-    let mut f = [[f64x8::splat(simd, 0.0); 3]; 3];
-    let one = f64x8::splat(simd, 1.0);
+    let mut h = [[f64x8::splat(simd, 0.0); 3]; 3];
     for j in 0..3 {
         let at = point * OF_POINT + j;
         let [x, y, z] = [number(at), number(at + 3), number(at + 6)];
         for i in 0..3 {
-            f[i][j] = slopes[0][across(point, 0)][i] * x
+            h[i][j] = slopes[0][across(point, 0)][i] * x
                 + slopes[1][across(point, 1)][i] * y
                 + slopes[2][across(point, 2)][i] * z;
         }
-        f[j][j] += one;
     }
-    f
+    h
 }
