@@ -121,7 +121,7 @@ def with_bending(rows, growths):
     """What incompatible elements give on the same meshes; `growths` are pairs of μ and growth rate."""
     levels = QUADRATIC["levels"]
     low, high = QUADRATIC["lock_in_mu"]
-    text = ", ".join(f"{growth:.0f} 1/s at {mu:g}" for mu, growth in growths)
+    text = ", ".join(f"{max(growth, 0.0):.0f} 1/s at {mu:g}" for mu, growth in growths)
     return (
         "## With elements that bend\n\n"
         "The same with `\"element\": \"incompatible\"` in pin and disk, at the same cost:\n\n"
