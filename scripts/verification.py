@@ -42,6 +42,7 @@ BENCHMARKS = {
     "B22": "A compliant contact layer",
     "B23": "General meshes: cylinders, tilt, regions",
     "B24": "Elements that bend: Cook's membrane",
+    "B35": "Large strains: cantilever",
     "Flutter": "Linear flutter of the pin",
     "R1": "Ring: eigenfrequencies",
     "R2": "Ring: static deflection",

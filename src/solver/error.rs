@@ -93,7 +93,8 @@ pub enum SolverError {
     /// The pin has deformed so much that the time step is above the stability limit.
     #[error(
         "at t = {time_s:.6e} s the pin has deformed so that the stability limit is {limit_s:.3e} s, below the time step of \
-         {time_step_s:.3e} s; give numerics.time_step_s = {advised_s:.2e} or less, or numerics.safety_factor = {safety_factor:.2e} or less"
+         {time_step_s:.3e} s; give numerics.time_step_s = {advised_s:.2e} or less, or numerics.safety_factor = {} or less",
+        short(*safety_factor)
     )]
     StepOutgrown {
         /// The time at which it was found \[s\].

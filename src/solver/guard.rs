@@ -11,8 +11,8 @@ use super::state::StateOf;
 
 /// A run counts as diverged if its stored energy exceeds the energy put in by more than this factor.
 ///
-/// The balance of [`energy`](super::energy) is exact, or nearly so with large strains. So no run stores more energy than was put in, unless contact
-/// or damping add energy. This happens when the highest mode alternates at the stability limit. The factor 2 leaves
+/// The balance of [`energy`](super::energy) is exact, or nearly so with large strains. So no run stores more energy than was put in, unless
+/// contact or damping add energy. This happens when the highest mode alternates at the stability limit. The factor 2 leaves
 /// room for rounding and for single steps.
 const STORED_FACTOR: f64 = 2.0;
 

@@ -56,7 +56,7 @@ impl JobSpec {
             found.add("scene.disk.kind", "elastic", "rigid with scene.pin.strains = finite");
         }
         if numerics.precision == Precision::Single {
-            let right = "double with scene.pin.strains = finite: strains are small differences of positions";
+            let right = "double with scene.pin.strains = finite, whose elements are computed in double precision alone";
             found.add("numerics.precision", "single", right);
         }
         if numerics.beta2 != 0.5 {

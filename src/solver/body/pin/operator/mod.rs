@@ -81,8 +81,8 @@ pub(in crate::solver) trait Moving<S: Simd, R: Number> {
 trait Pass<S: Simd, R: Number> {
     /// The three components of x in block `at`.
     fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3];
-    /// Takes the three components of the internal forces of x in a block; those of linear elements are K x. The inputs of its plane and of those below are not read again,
-    /// so it may overwrite them. Planes come in their order.
+    /// Takes the three components of the internal forces of x in a block; those of linear elements are K x. The inputs of its plane and of
+    /// those below are not read again, so it may overwrite them. Planes come in their order.
     fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]);
 }
 
@@ -348,7 +348,7 @@ impl Operator {
     }
 }
 
-/// What the largest frequency squared of a deformed pin may be too low. A check of the time step takes some 70 passes with it.
+/// Share by which the largest frequency squared of a deformed pin may be too low. A check of the time step takes some 70 passes with it.
 const CHECK_MARGIN: f64 = 0.05;
 
 /// u + a x.
