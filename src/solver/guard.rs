@@ -80,7 +80,8 @@ pub fn check_step<const L: usize, R: RunNumber>(
 ) -> Result<(), SolverError> {
     let steps = state.steps_done(lane);
     let is_early = steps.is_power_of_two() && (FIRST_CHECK..STEPS_PER_CHECK).contains(&steps);
-    if !(is_early || steps.is_multiple_of(STEPS_PER_CHECK)) {
+    let is_due = is_early || steps.is_multiple_of(STEPS_PER_CHECK);
+    if !is_due || model.pin().operator().law().is_none() {
         return Ok(());
     }
     let Some(limit_s) = model.deformed_limit_s(&displacements(model, state, lane, 0.0)) else {

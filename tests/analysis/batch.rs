@@ -131,6 +131,17 @@ fn companions_and_interruptions_change_nothing_with_other_laws() {
 /// Protects: the same with general meshes, whose nodes are in lines that do not fill their vectors, and with damping in proportion to the mass.
 #[test]
 fn companions_and_interruptions_change_nothing_on_general_meshes() {
+    nothing_changes_on_general_meshes(&PAUSES[..1]);
+}
+
+/// Protects: the same with fewer interruptions, of which each finds another step.
+#[test]
+#[ignore = "four kinds of general meshes, each run again for each interval"]
+fn rarer_interruptions_change_nothing_on_general_meshes() {
+    nothing_changes_on_general_meshes(&PAUSES[1..]);
+}
+
+fn nothing_changes_on_general_meshes(pauses: &[usize]) {
     for (disk, precision, strains) in [
         (DiskKind::Rigid, Precision::Double, Strains::Small),
         (DiskKind::Rigid, Precision::Double, Strains::Finite),
@@ -162,7 +173,7 @@ fn companions_and_interruptions_change_nothing_on_general_meshes() {
             }
         }
         companions_change_nothing_in(&jobs);
-        resumed_jobs_have_the_same_bits(&jobs, &[2], &PAUSES[..1]);
+        resumed_jobs_have_the_same_bits(&jobs, &[2], pauses);
     }
 }
 
@@ -241,17 +252,24 @@ fn accurate_jobs(precision: Precision) -> Vec<JobSpec> {
 /// on each of its meshes.
 #[test]
 fn companions_and_interruptions_change_nothing_where_an_accuracy_is_asked() {
-    nothing_changes_where_an_accuracy_is_asked(Precision::Single);
+    nothing_changes_where_an_accuracy_is_asked(Precision::Single, &PAUSES[..1]);
+}
+
+/// Protects: the same with fewer interruptions, of which each finds another step.
+#[test]
+#[ignore = "two jobs, each run again for each interval"]
+fn rarer_interruptions_change_nothing_where_an_accuracy_is_asked() {
+    nothing_changes_where_an_accuracy_is_asked(Precision::Single, &PAUSES[1..]);
 }
 
 /// Protects: the same in double precision.
 #[test]
 #[ignore = "the other precision takes the same paths"]
 fn companions_and_interruptions_change_nothing_where_an_accuracy_is_asked_in_double_precision() {
-    nothing_changes_where_an_accuracy_is_asked(Precision::Double);
+    nothing_changes_where_an_accuracy_is_asked(Precision::Double, &PAUSES);
 }
 
-fn nothing_changes_where_an_accuracy_is_asked(precision: Precision) {
+fn nothing_changes_where_an_accuracy_is_asked(precision: Precision, pauses: &[usize]) {
     let jobs = accurate_jobs(precision);
     let records: Vec<_> = jobs.iter().map(|job| solve(job, &mut Unobserved).unwrap()).collect();
     for (elements, reached) in [([12, 14, 14], true), ([24, 28, 28], false)] {
@@ -261,7 +279,7 @@ fn nothing_changes_where_an_accuracy_is_asked(precision: Precision) {
         assert!(records.iter().any(|record| is_such(&record)), "{elements:?}, reached: {reached}");
     }
     companions_change_nothing_in(&jobs);
-    resumed_jobs_have_the_same_bits(&jobs, &[0, 3], &PAUSES[..1]);
+    resumed_jobs_have_the_same_bits(&jobs, &[0, 3], pauses);
 }
 
 /// Protects: the same with both, a coarser mesh and single precision.

@@ -25,7 +25,18 @@ fn on(disk: DiskKind, mut job: JobSpec) -> JobRecord {
 /// rest there: nodes pass from patch to patch, and the disk has modes with almost no damping.
 #[test]
 fn stable_sliding_is_stable_on_both_disks() {
-    for (mu, omega_rpm) in [(0.1, 7.0), (0.2, 20.0)] {
+    is_stable_on_both_disks(&[(0.1, 7.0), (0.2, 20.0)]);
+}
+
+/// Protects: the same at high speed.
+#[test]
+#[ignore = "a third speed on an elastic disk"]
+fn fast_stable_sliding_is_stable_on_both_disks() {
+    is_stable_on_both_disks(&[(0.1, 100.0)]);
+}
+
+fn is_stable_on_both_disks(points: &[(f64, f64)]) {
+    for &(mu, omega_rpm) in points {
         for disk in [DiskKind::Rigid, DiskKind::Elastic] {
             let record = on(disk, job(mu, omega_rpm));
             let told = format!("{disk:?}, μ = {mu}, {omega_rpm} rpm: {:?}", record.growth_rate_per_s);

@@ -335,7 +335,8 @@ impl HyperelasticOperator {
         let mut slopes: Slopes<S> = [[[all(0.0); 3]; 4]; 3];
         slopes_of(simd, u, &mut slopes);
         let (lambda, shear) = (number(LAMBDA).to_array(), number(SHEAR).to_array());
-        let mean = self.mean(simd, &number, &slopes).to_array();
+        let mean: [f64; WIDTH] =
+            if self.is_selective { self.mean(simd, &number, &slopes).to_array() } else { [0.0; WIDTH] };
         let (mut energy_j, mut smallest) = ([0.0; WIDTH], [f64::INFINITY; WIDTH]);
         let mut volume = [0.0; WIDTH];
         for point in 0..8 {
