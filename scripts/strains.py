@@ -25,7 +25,7 @@ def study(elements, strains, law):
         "density_kg_m3": 1100,
     }
     if law:
-        pin["hyperelasticity"] = law
+        pin["material"] = law
     return {
         "name": "-".join(["rubber", str(elements[0]), law or strains]).replace("_", "-"),
         "scene": {

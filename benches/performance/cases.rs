@@ -294,6 +294,7 @@ fn general<R: RunNumber>(what: &'static str) -> Pair {
         young_modulus_pa: pin.young_modulus_pa,
         poisson_ratio: pin.poisson_ratio,
         density_kg_m3: pin.density_kg_m3,
+        plasticity: None,
     }];
     Pair::new(what, stepping::<R>("pair_general", &general, 0.4), stepping::<R>("pair_block", &block, 0.4))
 }

@@ -21,6 +21,8 @@ pub struct Cycle {
     pub amplitude_n: f64,
     /// Largest and smallest difference \[N\] of that force from the section.
     pub extremes_n: [f64; 2],
+    /// Plastic work and work of friction \[J\] within it.
+    pub works_j: [f64; 2],
 }
 
 impl Cycle {
@@ -159,6 +161,7 @@ impl CycleCutter {
                 energies: at_start,
                 amplitude_n: self.remembered,
                 extremes_n: [self.highest, self.lowest],
+                works_j: [energies.plastic_j - at_start.plastic_j, energies.friction_j - at_start.friction_j],
             });
             self.open = Some((time_s, *energies));
             self.figures = Figures::EMPTY;

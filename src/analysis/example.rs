@@ -5,7 +5,8 @@ use super::mode::ComplexMode;
 use super::nested::CoarseStart;
 use super::program::{Direction, ProgramWindow};
 use super::record::{
-    ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
+    ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, PlasticFlow, Regime,
+    SlidingStability,
 };
 use super::sample::OBSERVED_NAMES;
 use super::steady::Obstacle;
@@ -85,6 +86,7 @@ impl JobRecord {
             windows: [Direction::Up, Direction::Down]
                 .map(|direction| ProgramWindow { direction, ..ProgramWindow::example() })
                 .into(),
+            plastic: Some(PlasticFlow { strain_max: 0.004, work_j: 2.0e-5, share: 0.03 }),
             energy: EnergyTotals::default(),
             nodes: OBSERVED_NAMES.map(node).into(),
         }

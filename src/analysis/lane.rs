@@ -9,7 +9,8 @@ use super::nested::CoarseStart;
 use super::noted::Noted;
 use super::program::ProgramWindows;
 use super::record::{
-    ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
+    ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, PlasticFlow, Regime,
+    SlidingStability,
 };
 use super::sample::{DIRECTIONS, OBSERVED_NAMES, Sample};
 use super::steady::{self, Obstacle, SteadyState};
@@ -194,13 +195,14 @@ impl LaneAnalysis {
     }
 
     /// The record of a run that ended after `steps` steps with these final `energies`. `solves` are the
-    /// contact solves on an elastic disk.
+    /// contact solves on an elastic disk, `plastic` the plastic work \[J\] and the largest plastic strain of a pin that may yield.
     pub fn record(
         &self,
         model: &Model,
         steps: u64,
         energies: &Energies,
         solves: Option<&Solves>,
+        plastic: Option<[f64; 2]>,
     ) -> JobRecord {
         let simulated_s = steps as f64 * model.time_step_s();
         let periodic = self.periodic();
@@ -265,6 +267,11 @@ impl LaneAnalysis {
             disk: model.ring().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),
             holder: holder_motion(&self.spec.scene.holder, figures),
             windows: self.windows.as_ref().map_or_else(Vec::new, |windows| windows.all(&self.spec)),
+            plastic: plastic.map(|[work_j, strain_max]| PlasticFlow {
+                strain_max,
+                work_j,
+                share: plastic_share(&window.energies, energies),
+            }),
             energy: totals(energies),
             nodes: observed_nodes(figures),
         }
@@ -389,6 +396,12 @@ fn energy_identity(start: &Energies, end: &Energies) -> f64 {
 fn contact_loss_share(start: &Energies, end: &Energies) -> f64 {
     let drive_j = end.drive_work_j - start.drive_work_j;
     if drive_j == 0.0 { 0.0 } else { (end.contact_loss_j - start.contact_loss_j) / drive_j }
+}
+
+/// Plastic work / work of friction, over the window.
+fn plastic_share(start: &Energies, end: &Energies) -> f64 {
+    let work_j = end.plastic_j - start.plastic_j;
+    if work_j == 0.0 { 0.0 } else { work_j / (end.friction_j - start.friction_j) }
 }
 
 /// The mesh of an elastic disk, and its contact solves in so many steps.

@@ -13,6 +13,7 @@ use super::nested::{Beginning, under_way};
 use super::noted::Noted;
 use super::record::{JobRecord, Outcome};
 use super::sample::{NodeSample, Sample, Sampler};
+use crate::solver::body::pin::History;
 use crate::solver::energy::{Energies, EnergyLedger};
 use crate::solver::lane::LaneState;
 use crate::solver::{Drive, Model, PinMotion, RunNumber, StateOf, guard, step};
@@ -142,6 +143,8 @@ pub trait Nodes {
     fn u_m(&self) -> Vec<f64>;
     /// Velocities \[m/s\] over the step, in the same order.
     fn velocity_m_s(&self) -> Vec<f64>;
+    /// What the elements of the pin keep of their past.
+    fn history(&self) -> History<1, f64>;
     /// The gain of the stress smoothers, 1 − exp(−Δt/τ).
     fn stress_gain(&self) -> f64;
 }
@@ -163,6 +166,10 @@ impl<const L: usize, R: RunNumber> Nodes for NodesOfLane<'_, L, R> {
 
     fn velocity_m_s(&self) -> Vec<f64> {
         self.lanes.state.p.values().skip(self.lane).step_by(L).collect()
+    }
+
+    fn history(&self) -> History<1, f64> {
+        self.lanes.state.history.of_lane(self.lane)
     }
 
     fn stress_gain(&self) -> f64 {
@@ -286,7 +293,10 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
         if let Err(error) = guard::check_finite(&self.model, &self.state, lane) {
             return Some(Err(error.into()));
         }
-        let record = run.analysis.record(&self.model, steps, energies, self.state.target.solves_of(lane));
+        let history = self.state.history.numbers();
+        let plastic = self.model.pin().operator().plastic_totals(history, lane, L);
+        let solves = self.state.target.solves_of(lane);
+        let record = run.analysis.record(&self.model, steps, energies, solves, plastic);
         Some(match record.non_finite_number() {
             None => Ok(record),
             Some(figure) => Err(JobError::NotFinite { figure }),

@@ -64,7 +64,8 @@ pub use mode::ComplexMode;
 pub use nested::{CoarseStart, earliest_end};
 pub use noted::Noted;
 pub use record::{
-    ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
+    ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, PlasticFlow, Regime,
+    SlidingStability,
 };
 pub use stability::Structures;
 pub use steady::Obstacle;

@@ -53,6 +53,28 @@ pub struct HolderMotion {
     pub acceleration_rms_m_s2: f64,
 }
 
+/// The plastic flow of a pin that may yield.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PlasticFlow {
+    /// Largest plastic strain at the end of the run.
+    pub strain_max: f64,
+    /// Plastic work \[J\] since the start.
+    pub work_j: f64,
+    /// Plastic work within the averaging window over the work of friction there.
+    pub share: f64,
+}
+
+impl PlasticFlow {
+    /// Its state in words: `elastic` if nothing has yielded, `shaken_down` if nothing yields in the window, and `yielding`.
+    pub fn state(&self) -> &'static str {
+        match (self.work_j != 0.0, self.share != 0.0) {
+            (false, _) => "elastic",
+            (true, false) => "shaken_down",
+            (true, true) => "yielding",
+        }
+    }
+}
+
 /// The mesh and the contact solves of an elastic disk.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ElasticDisk {
@@ -188,6 +210,9 @@ pub struct JobRecord {
     /// The windows of a run whose speed or load changes in time; empty for another run.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub windows: Vec<ProgramWindow>,
+    /// The plastic flow; none if no material of the pin yields.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plastic: Option<PlasticFlow>,
     /// Energies at the end of the run.
     pub energy: EnergyTotals,
     /// The two observed nodes.

@@ -300,6 +300,7 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
         },
         energy_identity_residual: 0.0,
         contact_loss_share: 0.0,
+        plastic: None,
         mu_reduction_stick: 0.0,
         mu_reduction_slip: slip_reduction,
         growth_rate_per_s: point.modes.first().map(growth),

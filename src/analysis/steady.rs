@@ -4,7 +4,8 @@
 //! cycle). Therefore groups of m = 1, 2, 3, 4 crossings are tried. The smallest m whose groups repeat gives
 //! the limit cycle. Groups repeat if, over the last `cycles` of them, the range of every figure is within
 //! `tolerance`, and its means over the two halves differ by at most `drift_tolerance`. The amplitude of N is
-//! one of the figures: a slowly growing or decaying oscillation is not periodic, however small it is.
+//! one of the figures: a slowly growing or decaying oscillation is not periodic, however small it is. Another one is the plastic work of a
+//! cycle over the work of friction: where a material yields, it must stand still, at zero (shakedown) or not.
 //!
 //! A rate of growth or decay below `drift_tolerance` over half of the window is not seen: 1.5 1/s in the reference scene.
 //!
@@ -147,7 +148,7 @@ pub fn obstacle(cycles: &[Cycle], detection: &Detection, slow: Option<SlowTimes>
 }
 
 /// Number of figures compared.
-const FIGURES: usize = 8;
+const FIGURES: usize = 9;
 /// Names of the compared figures.
 const NAMES: [&str; FIGURES] = [
     "mu_star",
@@ -155,12 +156,13 @@ const NAMES: [&str; FIGURES] = [
     "stick_share",
     "slip_share",
     "separated_share",
+    "plastic work over that of friction",
     "period",
     "sigma_n_max",
     "amplitude of N",
 ];
 /// Figures from this index on are compared relative to their mean.
-const FIRST_RELATIVE: usize = 5;
+const FIRST_RELATIVE: usize = 6;
 
 fn figures_of(group: &[Cycle]) -> [f64; FIGURES] {
     let figures = Figures::merged(group.iter().map(|cycle| &cycle.figures));
@@ -171,10 +173,17 @@ fn figures_of(group: &[Cycle]) -> [f64; FIGURES] {
         stick,
         slip,
         separated,
+        plastic_share(group),
         group[group.len() - 1].end_s - group[0].start_s,
         figures.sigma_n_max_pa,
         group.iter().map(|cycle| cycle.amplitude_n).fold(0.0, f64::max),
     ]
+}
+
+/// The plastic work of a group of cycles over the work of friction; 0 if nothing yields.
+fn plastic_share(group: &[Cycle]) -> f64 {
+    let sum = |i: usize| group.iter().map(|cycle| cycle.works_j[i]).sum::<f64>();
+    if sum(0) == 0.0 { 0.0 } else { sum(0) / sum(1) }
 }
 
 /// The figures of a group of cycles of the holder.
@@ -191,6 +200,7 @@ fn figures_of_swing(group: &[Cycle]) -> [f64; FIGURES] {
         stick,
         slip,
         separated,
+        plastic_share(group),
         group[group.len() - 1].end_s - group[0].start_s,
         1.0,
         group.iter().map(of_both).sum::<f64>() / group.len() as f64,

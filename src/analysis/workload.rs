@@ -2,6 +2,7 @@
 
 use super::error::{JobError, check_step, step_count};
 use crate::solver::Model;
+use crate::solver::body::pin::operator::Yielding;
 use crate::solver::scheme::Bound;
 use crate::spec::{DiskKind, JobSpec, Precision, StabilityMethod, Strains, elasticity};
 use crate::stability::Structure;
@@ -23,6 +24,8 @@ pub struct Workload {
     /// Whether its strains may be large.
     #[serde(skip)]
     pub has_large_strains: bool,
+    /// Number of numbers that a job keeps of the past of its elements.
+    pub history_len: usize,
     /// Number of nodes of the disk; 0 if it is rigid.
     pub disk_nodes: usize,
     /// Stages of the disk in a time step; 0 if it is rigid.
@@ -49,6 +52,8 @@ const GENERAL_TIME: f64 = 3.0;
 
 /// Time of a step with large strains, relative to that of a general mesh with small ones: 4.5 on 10051 nodes and 4.7 on 567 (docs/design.md).
 const LARGE_STRAINS_TIME: f64 = 4.6;
+/// The same of a material that may yield, as long as few elements do.
+const YIELDING_TIME: f64 = 6.0;
 
 /// Additional memory \[byte\] of an element with large strains in a model: 83 numbers and eight nodes. A mesh has about as many elements as nodes.
 const LARGE_STRAINS_ELEMENT_BYTES: f64 = 83.0 * 8.0 + 8.0 * 4.0;
@@ -98,6 +103,7 @@ impl Workload {
             pin_nodes: model.mesh().node_count(),
             is_general: model.mesh().block().is_none(),
             has_large_strains: model.pin().operator().law().is_some(),
+            history_len: model.pin().operator().history_len(),
             disk_nodes: disk.map_or(0, |disk| disk.mesh().node_count()),
             disk_stages: disk.map_or(0, |disk| disk.stages().count()),
             time_step_s: model.time_step_s(),
@@ -132,6 +138,8 @@ impl Workload {
             pin_nodes: pin.node_count() as usize,
             is_general: !pin.is_plain_block(),
             has_large_strains: pin.strains == Strains::Finite,
+            history_len: pin.element_count() as usize
+                * Yielding::numbers_per_element(&pin.plasticity_of_materials()),
             disk_nodes,
             disk_stages,
             time_step_s: numerics.time_step_s.unwrap_or(numerics.safety_factor * limit_s),
@@ -161,6 +169,7 @@ impl Workload {
         let disk = DISK_STAGE * (self.disk_nodes * self.disk_stages) as f64;
         let [time, _] = self.over_double();
         let general = match (self.is_general, self.has_large_strains) {
+            (_, true) if self.history_len > 0 => GENERAL_TIME * YIELDING_TIME,
             (_, true) => GENERAL_TIME * LARGE_STRAINS_TIME,
             (true, false) => GENERAL_TIME,
             (false, false) => 1.0,
@@ -192,7 +201,12 @@ impl Workload {
         let general = if self.is_general { GENERAL_NODE_BYTES * self.pin_nodes as f64 } else { 0.0 };
         let large =
             if self.has_large_strains { LARGE_STRAINS_ELEMENT_BYTES * self.pin_nodes as f64 } else { 0.0 };
-        pin + general + large + disk + jobs as f64 * OBSERVED_STEP_BYTES * observation_s / self.time_step_s
+        let history = 8.0 * lanes * self.history_len as f64;
+        pin + general
+            + large
+            + history
+            + disk
+            + jobs as f64 * OBSERVED_STEP_BYTES * observation_s / self.time_step_s
     }
 
     /// Memory \[byte\] that complex modes of steady sliding take.
@@ -202,7 +216,7 @@ impl Workload {
 
     /// Size \[byte\] of a checkpoint.
     pub fn checkpoint_bytes(&self) -> f64 {
-        CHECKPOINT_NODE_BYTES * (self.pin_nodes + self.disk_nodes) as f64
+        CHECKPOINT_NODE_BYTES * (self.pin_nodes + self.disk_nodes) as f64 + 8.0 * self.history_len as f64
     }
 }
 

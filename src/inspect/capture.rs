@@ -6,6 +6,7 @@ use super::survey::TimeWindows;
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment};
 use crate::solver::Model;
+use crate::solver::body::pin::History;
 use crate::solver::energy::Energies;
 use crate::spec::JobSpec;
 use std::collections::VecDeque;
@@ -73,6 +74,8 @@ pub struct Frame {
     pub u_m: Vec<f64>,
     /// Velocities [m/s] over the step, in the same order.
     pub velocity_m_s: Vec<f64>,
+    /// What the elements keep of their past.
+    pub history: History<1, f64>,
     /// The contact face during the step.
     pub face: Vec<NodeSample>,
 }
@@ -197,6 +200,7 @@ impl JobObserver for Recorder<'_> {
                 time_s,
                 u_m: moment.nodes.u_m(),
                 velocity_m_s: moment.nodes.velocity_m_s(),
+                history: moment.nodes.history(),
                 face: face_of(moment),
             });
         }

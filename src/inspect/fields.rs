@@ -23,7 +23,7 @@ const CODES: [(i8, &str); 4] =
 const NO_CONTACT_NODE: i8 = -1;
 
 /// The fields of the files, each with its meaning and unit.
-pub(super) const FIELDS: [(&str, &str); 9] = [
+pub(super) const FIELDS: [(&str, &str); 10] = [
     ("displacement_m", "displacement [m]"),
     ("velocity_m_s", "velocity over the step that led to the displacement [m/s]"),
     ("contact_force_n", "contact force on the pin: friction in x and y, normal force in z [N]"),
@@ -36,6 +36,7 @@ pub(super) const FIELDS: [(&str, &str); 9] = [
     ("von_mises_pa", "von Mises stress [Pa]"),
     ("principal_stress_pa", "principal stresses I ≥ II ≥ III [Pa]; the largest shear stress is (I − III)/2"),
     ("stress_pa", "stress in the order xx, yy, zz, xy, yz, xz [Pa]"),
+    ("plastic_strain", "plastic strain, of a pin that may yield"),
 ];
 
 /// Writes `fields.pvd` and a folder with a file for each frame.
@@ -82,9 +83,11 @@ fn point_data(capture: &Capture, mesh: &PinMesh, frame: &Frame) -> Vec<PointData
     };
     let mut codes: Vec<i8> = frame.face.iter().map(|node| code(node.state)).collect();
     codes.resize(mesh.node_count(), NO_CONTACT_NODE);
-    let stress = capture.model.pin().nodal_stress_pa(&frame.u_m);
+    let stress = capture.model.pin().nodal_stress_pa(&frame.u_m, &frame.history);
     let principal: Vec<f64> = stress.iter().flat_map(|at| stress::principal_pa(*at)).collect();
-    vec![
+    let plastic = capture.model.pin().nodal_plastic_strain(&frame.history);
+    let plastic = plastic.map(|strain| numbers("plastic_strain", 1, &[], strain));
+    let mut all = vec![
         numbers("displacement_m", 3, &[], frame.u_m.clone()),
         numbers("velocity_m_s", 3, &[], frame.velocity_m_s.clone()),
         numbers("contact_force_n", 3, &[], of_face(3, &|node, _| node.force_n.to_vec())),
@@ -99,7 +102,9 @@ fn point_data(capture: &Capture, mesh: &PinMesh, frame: &Frame) -> Vec<PointData
         numbers("von_mises_pa", 1, &[], stress.iter().map(|at| stress::von_mises_pa(*at)).collect()),
         numbers("principal_stress_pa", 3, &PRINCIPAL, principal),
         numbers("stress_pa", 6, &stress::COMPONENTS, stress.into_iter().flatten().collect()),
-    ]
+    ];
+    all.extend(plastic);
+    all
 }
 
 /// The number of a contact state in the files: 0 separated, 1 stick, 2 slip. Other nodes have −1.

@@ -22,7 +22,8 @@
 //! A contact layer stores ∫N dδ, which is taken from the work −N·Δz of its nodes. The rest of that work is what its implicit
 //! law dissipates, and remains in the contact loss.
 //!
-//! With large strains the stored energy is W(u) instead of ½uKu, and the balance has an error of the second order in Δt.
+//! With large strains the stored energy is W(u) instead of ½uKu, and the balance has an error of the second order in Δt. Elements that
+//! yield add up their plastic work themselves, in every step.
 //!
 //! The energies are a sum over bodies, supports and the interface. The works of the interface and of the load are
 //! summed in every step, because they need boundary nodes only. The stored energies and the damping of bodies need
@@ -62,6 +63,9 @@ pub struct Energies {
     pub damping_j: f64,
     /// Energy lost in contact impacts.
     pub contact_loss_j: f64,
+    /// Plastic work of the pin.
+    #[serde(default)]
+    pub plastic_j: f64,
 }
 
 impl Energies {
@@ -73,6 +77,7 @@ impl Energies {
             - self.friction_j
             - self.damping_j
             - self.contact_loss_j
+            - self.plastic_j
     }
 
     /// Energy put in \[J\], as a sum of magnitudes. It is the scale of the balance.
@@ -242,6 +247,7 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
                 friction_j: sums.friction.done(gamma),
                 damping_j: sums.damping.done(gamma) + sums.numerical_j,
                 contact_loss_j: sums.contact_loss.done(gamma) - in_layer_j[l],
+                plastic_j: found.plastic_j[l],
             };
         }
         found.damping_after_j.map(|work_j| samples * work_j)
@@ -266,6 +272,8 @@ impl<const L: usize, R: RunNumber> LaneState for EnergyLedger<L, R> {
             friction_j,
             damping_j,
             contact_loss_j,
+            // The audit that follows finds it in what the elements keep.
+            plastic_j: _,
         } = self.energies[lane];
         saved.extend([kinetic_j, elastic_j, initial_j, load_work_j]);
         saved.extend([drive_work_j, friction_j, damping_j, contact_loss_j]);
@@ -292,6 +300,7 @@ impl<const L: usize, R: RunNumber> LaneState for EnergyLedger<L, R> {
             friction_j,
             damping_j,
             contact_loss_j,
+            plastic_j: 0.0,
         };
         [self.last_rates[lane]] = next(saved);
         self.pin.load_lane(lane, saved);

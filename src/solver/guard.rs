@@ -84,7 +84,8 @@ pub fn check_step<const L: usize, R: RunNumber>(
     if !is_due || model.pin().operator().law().is_none() {
         return Ok(());
     }
-    let Some(limit_s) = model.deformed_limit_s(&displacements(model, state, lane, 0.0)) else {
+    let history = state.history.of_lane(lane);
+    let Some(limit_s) = model.deformed_limit_s(&displacements(model, state, lane, 0.0), &history) else {
         return Ok(());
     };
     let time_step_s = model.time_step_s();

@@ -1,6 +1,6 @@
 //! The immutable part of a run, shared by all lanes: the pin, its supports and load, and its target.
 
-use super::body::pin::{PinBody, PinMesh, Stiffness};
+use super::body::pin::{History, PinBody, PinMesh, Stiffness};
 use super::body::ring::{RingBody, RingDefinition, UnsteppedRing};
 use super::error::SolverError;
 use super::field::Field;
@@ -190,8 +190,8 @@ impl Model {
 
     /// The stability limit \[s\] of the pin with these displacements, at most 2.5 % too high and never too low; returns `None` if the
     /// displacements do not change it.
-    pub fn deformed_limit_s(&self, u: &Field<1>) -> Option<f64> {
-        let omega_max_rad_s = self.pin.deformed_omega_max_rad_s(u)?;
+    pub fn deformed_limit_s(&self, u: &Field<1>, history: &History<1, f64>) -> Option<f64> {
+        let omega_max_rad_s = self.pin.deformed_omega_max_rad_s(u, history)?;
         let Scheme { beta2, beta_r_s, alpha_r_per_s, .. } = self.scheme;
         let bound = bound_of(&self.pin, &self.supports, omega_max_rad_s, alpha_r_per_s);
         Some(bound.time_step_limit_s(beta2, beta_r_s))

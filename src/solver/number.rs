@@ -48,6 +48,8 @@ pub trait Number: SimdFloatElement + Send + Sync + 'static {
     fn add_to_totals<S: Simd>(totals: &mut Self::Totals, vector: Self::Vector<S>);
     /// The numbers themselves in double precision; returns `None` in single precision.
     fn doubles(numbers: &mut [Self]) -> Option<&mut [f64]>;
+    /// The same, to read them.
+    fn as_doubles(numbers: &[Self]) -> Option<&[f64]>;
     /// The form of a table in these numbers. The rounded one is made when it is needed.
     fn of_both<'a, const N: usize>(
         double: &'a [[f64; N]],
@@ -167,6 +169,10 @@ impl Number for f64 {
         Some(numbers)
     }
 
+    fn as_doubles(numbers: &[f64]) -> Option<&[f64]> {
+        Some(numbers)
+    }
+
     fn of_both<'a, const N: usize>(
         double: &'a [[f64; N]],
         _single: impl FnOnce() -> &'a [[f32; N]],
@@ -204,6 +210,10 @@ impl Number for f32 {
     }
 
     fn doubles(_: &mut [f32]) -> Option<&mut [f64]> {
+        None
+    }
+
+    fn as_doubles(_: &[f32]) -> Option<&[f64]> {
         None
     }
 

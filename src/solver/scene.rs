@@ -29,7 +29,10 @@ impl Model {
             materials: std::iter::once(Material::of_pin(&scene.pin)).chain(regions).collect(),
             stiffness: match scene.pin.strains {
                 Strains::Small => Stiffness::Elastic,
-                Strains::Finite => Stiffness::Hyperelastic(scene.pin.hyperelasticity),
+                Strains::Finite => Stiffness::Hyperelastic {
+                    law: scene.pin.material,
+                    plasticity: scene.pin.plasticity_of_materials(),
+                },
             },
             supports: clamp::supports(&mesh, &strip, scene.top, &scene.holder),
             load: load::normal_load(&mesh),

@@ -27,6 +27,7 @@ mod mesh;
 mod mu_of_speed;
 mod numerics;
 mod pin;
+mod plasticity;
 mod program;
 mod ring;
 mod roughness;
@@ -48,6 +49,7 @@ pub use mesh::{MeshContent, MeshFile};
 pub use mu_of_speed::{MOST_PAIRS, MuOfSpeed, Segment};
 pub use numerics::{Numerics, Precision, RunControl, Start};
 pub use pin::{Element, FEWEST_ACROSS, Pin, Region, Shape, core_elements};
+pub use plasticity::Plasticity;
 pub use program::MOST_POINTS;
 pub use program::{Change, Program, Table};
 pub use ring::{DiskTimeStep, Ring, TargetSurface};
@@ -55,7 +57,7 @@ pub use roughness::MOST_HEIGHTS;
 pub use roughness::{HeightMap, Roughness};
 pub use scene::{Clamp, ClampSide, Load, Scene, TopFace};
 pub use stability::StabilityMethod;
-pub use strains::{Hyperelasticity, Strains};
+pub use strains::{MaterialLaw, Strains};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -104,6 +106,7 @@ impl JobSpec {
         self.detection.check(&mut found);
         self.scene.check_program(self.run.limit_s, &mut found);
         self.check_strains(&mut found);
+        self.check_plasticity(&mut found);
         if self.has_run() {
             self.check_run(&mut found);
         } else {

@@ -4,7 +4,8 @@ use super::base::Base;
 use super::check::Violations;
 use super::elasticity;
 use super::mesh::MeshFile;
-use super::strains::{Hyperelasticity, Strains};
+use super::plasticity::Plasticity;
+use super::strains::{MaterialLaw, Strains};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::IntoStaticStr;
@@ -83,6 +84,9 @@ pub struct Region {
     pub poisson_ratio: f64,
     /// Density [kg/m³].
     pub density_kg_m3: f64,
+    /// When it yields, in a pin of the material `j2`. Absent: it does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plasticity: Option<Plasticity>,
 }
 
 /// Elements of the core of a cylinder in x and in y, for this number of elements over the diameter. About a quarter of them, and at
@@ -116,8 +120,11 @@ pub struct Pin {
     #[serde(skip_serializing_if = "Strains::is_small")]
     pub strains: Strains,
     /// The law of the material with finite strains.
-    #[serde(skip_serializing_if = "Hyperelasticity::is_neo_hookean")]
-    pub hyperelasticity: Hyperelasticity,
+    #[serde(skip_serializing_if = "MaterialLaw::is_neo_hookean")]
+    pub material: MaterialLaw,
+    /// When a material of the law `j2` yields.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plasticity: Option<Plasticity>,
     /// Young's modulus (Pa).
     pub young_modulus_pa: f64,
     /// Poisson's ratio, −1 < ν < 0.5.
@@ -144,7 +151,8 @@ impl Default for Pin {
             elements: [12, 15, 10],
             element: Element::Full,
             strains: Strains::Small,
-            hyperelasticity: Hyperelasticity::NeoHookean,
+            material: MaterialLaw::NeoHookean,
+            plasticity: None,
             young_modulus_pa: 1.0e9,
             poisson_ratio: 0.3,
             density_kg_m3: 2500.0,
@@ -164,6 +172,12 @@ impl Pin {
     pub fn shear_transit_s(&self) -> f64 {
         self.extent_m()[2]
             / elasticity::shear_wave_speed_m_s(self.young_modulus_pa, self.poisson_ratio, self.density_kg_m3)
+    }
+
+    /// When each material yields: that of the pin, and those of its regions.
+    pub fn plasticity_of_materials(&self) -> Vec<Option<Plasticity>> {
+        let regions = self.regions.iter().map(|region| region.plasticity.clone());
+        std::iter::once(self.plasticity.clone()).chain(regions).collect()
     }
 
     /// Whether the pin is an upright block of one material, for which there is a faster form of the stiffness.

@@ -28,16 +28,18 @@ impl Strains {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema, IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
-pub enum Hyperelasticity {
+pub enum MaterialLaw {
     /// W = ½G (tr C − 3 − 2 ln J) + ¼λ (J² − 1 − 2 ln J), for rubber.
     #[default]
     NeoHookean,
     /// W = ½λ (tr E)² + G E:E, for large rotations. It softens under compression: in uniaxial strain its force is largest at 58 % of the
     /// length.
     StVenantKirchhoff,
+    /// That of a metal: neo-Hookean until it yields, and von Mises' flow with isotropic and kinematic hardening then.
+    J2,
 }
 
-impl Hyperelasticity {
+impl MaterialLaw {
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that serde calls")]
     pub(super) fn is_neo_hookean(&self) -> bool {
         *self == Self::NeoHookean

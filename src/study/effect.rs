@@ -7,7 +7,7 @@ use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, StabilityMethod, Start, S
 pub(super) fn without_effect(spec: &JobSpec) -> Vec<&'static str> {
     let has_run = spec.stability != StabilityMethod::Modes;
     let rules: [(bool, &[&str]); 11] = [
-        (spec.scene.pin.strains == Strains::Small, &["/scene/pin/hyperelasticity"]),
+        (spec.scene.pin.strains == Strains::Small, &["/scene/pin/material"]),
         (spec.scene.pin.shape == Shape::Cylinder, &["/scene/pin/size_m/0", "/scene/pin/size_m/1"]),
         // The file has them.
         (spec.scene.pin.shape == Shape::Mesh, &["/scene/pin/elements", "/scene/clamp"]),

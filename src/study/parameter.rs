@@ -7,8 +7,8 @@ use super::plausible::{DENSITY, FRICTION, LENGTH, MODULUS, Plausible};
 use super::preset::Preset;
 use super::suggest;
 use crate::spec::{
-    ClampSide, DiskKind, DiskTimeStep, Element, FrictionLaw, Hyperelasticity, Precision, Shape,
-    StabilityMethod, Start, Strains, TargetSurface, TopFace,
+    ClampSide, DiskKind, DiskTimeStep, Element, FrictionLaw, MaterialLaw, Precision, Shape, StabilityMethod,
+    Start, Strains, TargetSurface, TopFace,
 };
 use crate::units::name_and_unit;
 use schemars::{Schema, SchemaGenerator};
@@ -68,7 +68,7 @@ const TARGET: Kind = Kind::Name(SchemaGenerator::subschema_for::<TargetSurface>)
 const PRESET: Kind = Kind::Name(SchemaGenerator::subschema_for::<Preset>);
 const ELEMENT: Kind = Kind::Name(SchemaGenerator::subschema_for::<Element>);
 const STRAINS: Kind = Kind::Name(SchemaGenerator::subschema_for::<Strains>);
-const HYPERELASTICITY: Kind = Kind::Name(SchemaGenerator::subschema_for::<Hyperelasticity>);
+const MATERIAL_LAW: Kind = Kind::Name(SchemaGenerator::subschema_for::<MaterialLaw>);
 const PRECISION: Kind = Kind::Name(SchemaGenerator::subschema_for::<Precision>);
 const STABILITY: Kind = Kind::Name(SchemaGenerator::subschema_for::<StabilityMethod>);
 const START: Kind = Kind::Name(SchemaGenerator::subschema_for::<Start>);
@@ -116,7 +116,14 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("nz", "/scene/pin/elements/2", Kind::Count, "elements in z").symbol("n_z"),
     parameter("element", "/scene/pin/element", ELEMENT, "element of the pin; an upright block with another one than full is a general mesh"),
     parameter("strains", "/scene/pin/strains", STRAINS, "small or finite strains of the pin; an upright block with finite ones is a general mesh"),
-    parameter("hyperelasticity", "/scene/pin/hyperelasticity", HYPERELASTICITY, "law of the material with finite strains"),
+    parameter("material", "/scene/pin/material", MATERIAL_LAW, "law of the material with finite strains"),
+    parameter("yield_stress_pa", "/scene/pin/plasticity/yield_stress_pa", Kind::Number, "stress at which a pin of the material j2 yields").symbol("σ₀"),
+    parameter("hardening_modulus_pa", "/scene/pin/plasticity/hardening_modulus_pa", Kind::Number, "linear isotropic hardening"),
+    parameter("saturation_stress_pa", "/scene/pin/plasticity/saturation_stress_pa", Kind::Number, "hardening that saturates"),
+    parameter("saturation_strain", "/scene/pin/plasticity/saturation_strain", Kind::Number, "plastic strain after which 63 % of that are reached"),
+    parameter("kinematic_modulus_pa", "/scene/pin/plasticity/kinematic_modulus_pa", Kind::Number, "linear kinematic hardening"),
+    parameter("rate_reference_per_s", "/scene/pin/plasticity/rate_reference_per_s", Kind::Number, "rate of plastic strain at which the yield stress doubles"),
+    parameter("rate_exponent", "/scene/pin/plasticity/rate_exponent", Kind::Number, "exponent of that rate"),
     parameter("pin_shape", "/scene/pin/shape", PIN_SHAPE, "shape of the pin"),
     parameter("diameter_m", "/scene/pin/diameter_m", Kind::Number, "diameter of a cylindrical pin").symbol("d").plausible(&LENGTH),
     parameter("tilt_x_deg", "/scene/pin/tilt_x_deg", Kind::Number, "tilt of the pin about x, which lifts its trailing end"),

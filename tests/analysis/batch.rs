@@ -7,8 +7,8 @@ use tribosweep_mechanics::analysis::batch::{Batch, Begun};
 use tribosweep_mechanics::analysis::continuation::PinMotion;
 use tribosweep_mechanics::analysis::{CoarseStart, JobRecord, Outcome, Unobserved, solve};
 use tribosweep_mechanics::spec::{
-    Accuracy, ClampSide, Continuation, DiskKind, FrictionLaw, JobSpec, MuOfSpeed, Precision, Region, Shape,
-    StabilityMethod, Start, Strains, Table,
+    Accuracy, ClampSide, Continuation, DiskKind, FrictionLaw, JobSpec, MaterialLaw, MuOfSpeed, Plasticity,
+    Precision, Region, Shape, StabilityMethod, Start, Strains, Table,
 };
 
 /// Turns between two interruptions of a job.
@@ -154,6 +154,13 @@ fn nothing_changes_on_general_meshes(pauses: &[usize]) {
             pin.strains = strains;
             if strains == Strains::Finite {
                 job.numerics.beta2 = 0.5;
+                // The peaks of the pressure yield, and what has yielded belongs to the state of a job.
+                pin.material = MaterialLaw::J2;
+                pin.plasticity = Some(Plasticity {
+                    yield_stress_pa: 4.0e5,
+                    kinematic_modulus_pa: Some(1.0e7),
+                    ..Plasticity::default()
+                });
             }
             pin.shape = Shape::Cylinder;
             pin.diameter_m = Some(0.012);
@@ -165,6 +172,7 @@ fn nothing_changes_on_general_meshes(pauses: &[usize]) {
                 young_modulus_pa: 2.0 * pin.young_modulus_pa,
                 poisson_ratio: 0.2,
                 density_kg_m3: pin.density_kg_m3,
+                plasticity: None,
             }];
             job.scene.clamp.side = ClampSide::WholeTop;
             job.run.limit_s = job.run.limit_s.min(0.003);
@@ -174,6 +182,8 @@ fn nothing_changes_on_general_meshes(pauses: &[usize]) {
         }
         companions_change_nothing_in(&jobs);
         resumed_jobs_have_the_same_bits(&jobs, &[2], pauses);
+        let flow = solve(&jobs[2], &mut Unobserved).unwrap().plastic;
+        assert_eq!(flow.is_some_and(|flow| flow.strain_max > 0.0), strains == Strains::Finite, "{flow:?}");
     }
 }
 

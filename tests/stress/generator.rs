@@ -182,6 +182,7 @@ fn shape(random: &mut Random, spec: &mut JobSpec) {
             young_modulus_pa: pin.young_modulus_pa * random.log_between(1.0e-3, 1.0e3),
             poisson_ratio: random.pick(&[0.0, 0.3, 0.49, -0.5]),
             density_kg_m3: pin.density_kg_m3 * random.log_between(1.0e-2, 1.0e2),
+            plasticity: None,
         }];
     }
 }

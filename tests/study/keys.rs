@@ -3,8 +3,9 @@
 use super::parse;
 use serde_json::{Value, json};
 use tribosweep::spec::{
-    Accuracy, Base, ClampSide, Contact, DiskKind, Element, FrictionLaw, HeightMap, Holder, Hyperelasticity,
-    JobSpec, MeshFile, MuOfSpeed, Precision, Region, Roughness, Shape, StabilityMethod, Start, Strains,
+    Accuracy, Base, ClampSide, Contact, DiskKind, Element, FrictionLaw, HeightMap, Holder, JobSpec,
+    MaterialLaw, MeshFile, MuOfSpeed, Plasticity, Precision, Region, Roughness, Shape, StabilityMethod,
+    Start, Strains,
 };
 use tribosweep::study::{PARAMETERS, job_key};
 
@@ -28,8 +29,18 @@ pub fn full() -> JobSpec {
     let mut spec = with_elastic_disk();
     spec.numerics.alpha_r_per_s = Some(100.0);
     (spec.scene.pin.element, spec.scene.disk.ring.element) = (Element::Incompatible, Element::Incompatible);
-    (spec.scene.pin.strains, spec.scene.pin.hyperelasticity) =
-        (Strains::Finite, Hyperelasticity::StVenantKirchhoff);
+    (spec.scene.pin.strains, spec.scene.pin.material) = (Strains::Finite, MaterialLaw::J2);
+    let plasticity = Plasticity {
+        yield_stress_pa: 3.0e8,
+        hardening_modulus_pa: Some(1.0e8),
+        saturation_stress_pa: Some(2.0e8),
+        saturation_strain: Some(0.1),
+        hardening_curve: vec![[0.0, 3.0e8], [0.1, 4.0e8]],
+        kinematic_modulus_pa: Some(1.5e8),
+        rate_reference_per_s: Some(1.0e3),
+        rate_exponent: Some(4.0),
+    };
+    spec.scene.pin.plasticity = Some(plasticity.clone());
     spec.scene.pin.elements = [12, 15, 11];
     spec.scene.contact = Contact {
         mu: 0.4,
@@ -75,6 +86,7 @@ pub fn full() -> JobSpec {
         young_modulus_pa: 2.0e9,
         poisson_ratio: 0.25,
         density_kg_m3: 3000.0,
+        plasticity: Some(plasticity),
     }];
     pin.mesh = Some(Box::new(MeshFile {
         file: Some("pin.msh".to_owned()),
@@ -140,7 +152,7 @@ fn another(value: &Value, pointer: &str) -> Option<Value> {
             "/scene/disk/kind" => Some(Value::from("rigid")),
             "/scene/pin/element" | "/scene/disk/ring/element" => Some(Value::from("full")),
             "/scene/pin/strains" => Some(Value::from("small")),
-            "/scene/pin/hyperelasticity" => Some(Value::from("neo_hookean")),
+            "/scene/pin/material" => Some(Value::from("neo_hookean")),
             "/scene/disk/ring/target" => Some(Value::from("ferguson")),
             "/scene/disk/ring/clock" => Some(Value::from("common")),
             "/run/start" => Some(Value::from("nested")),
@@ -244,7 +256,7 @@ fn the_time_step_counts_where_modes_depend_on_it() {
 #[test]
 fn a_law_without_large_strains_does_not_change_the_key() {
     let pin = |fields: &str| key_of(&format!(r#"{{ "scene": {{ "pin": {{ {fields} }} }} }}"#));
-    let law = r#""hyperelasticity": "st_venant_kirchhoff""#;
+    let law = r#""material": "st_venant_kirchhoff""#;
     assert_eq!(pin(law), pin(""));
     let finite = r#""strains": "finite""#;
     assert_ne!(pin(&format!("{finite}, {law}")), pin(finite));

@@ -38,6 +38,7 @@ mod modes;
 mod on_elastic_disk;
 mod particles;
 mod patch;
+mod plasticity;
 mod programs;
 mod reference;
 mod rig;

@@ -298,6 +298,7 @@ fn compare_operators(side: ClampSide, width_m: f64, evidence: &mut Evidence) {
         young_modulus_pa: pin.young_modulus_pa,
         poisson_ratio: pin.poisson_ratio,
         density_kg_m3: pin.density_kg_m3,
+        plasticity: None,
     }];
     let run = |spec: &JobSpec| {
         let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();

@@ -6,8 +6,8 @@ use super::{ExportColumn, Group, detail, quantity};
 use crate::analysis::program::Hysteresis;
 use crate::analysis::sample::OBSERVED_NAMES;
 use crate::analysis::{
-    CoarseStart, ComplexMode, ElasticDisk, HolderMotion, JobRecord, ObservedNode, Obstacle, Outcome, Regime,
-    SlidingStability, UnknownError,
+    CoarseStart, ComplexMode, ElasticDisk, HolderMotion, JobRecord, ObservedNode, Obstacle, Outcome,
+    PlasticFlow, Regime, SlidingStability, UnknownError,
 };
 use crate::publish::value::number;
 use crate::report::row::{JobRow, RowState};
@@ -101,6 +101,10 @@ pub static FURTHER: &[ExportColumn] = &[
     quantity("energy_friction_j", Energies, titled("energy dissipated by friction"), "dissipated by friction since the start", |row| of(row, |record| record.energy.friction_j)),
     quantity("energy_damping_j", Energies, titled("energy dissipated by damping"), "dissipated by the damping β_R and by β₂ > ½ since the start, added up from samples of the steps: where next to nothing is dissipated, it may be slightly negative", |row| of(row, |record| record.energy.damping_j)),
     quantity("energy_contact_loss_j", Energies, titled("energy lost in contact impacts"), "lost since the start by nodes that close or begin to stick, and by a contact layer", |row| of(row, |record| record.energy.contact_loss_j)),
+    detail("plastic_state", Result, "plastic flow of a pin that may yield: elastic (nothing has yielded), shaken_down (nothing yields in the window), yielding", |row| plastic(row, PlasticFlow::state)),
+    quantity("plastic_strain_max", Result, titled("largest plastic strain"), "largest plastic strain of the pin at the end of the run", |row| plastic(row, |plastic| plastic.strain_max)),
+    quantity("plastic_share", Result, titled("plastic work over that of friction"), "plastic work within the window over the work of friction there", |row| plastic(row, |plastic| plastic.share)),
+    quantity("energy_plastic_j", Energies, titled("plastic work"), "plastic work of the pin since the start", |row| plastic(row, |plastic| plastic.work_j)),
     quantity("front_centre_y_peak_to_peak_m", Nodes, BY_MEANING, "centre of the leading end: peak-to-peak displacement in y", |row| front(row, |node| node.y_peak_to_peak_m)),
     quantity("front_centre_lift_max_m", Nodes, BY_MEANING, "centre of the leading end: largest gap", |row| front(row, |node| node.lift_max_m)),
     quantity("front_centre_sigma_n_max_pa", Nodes, BY_MEANING, "centre of the leading end: largest normal contact stress, smoothed", |row| front(row, |node| node.sigma_n_max_pa)),
@@ -185,6 +189,10 @@ fn coarse_outcome(start: &CoarseStart) -> &'static str {
 
 fn disk<T: Into<Value>>(row: &JobRow, read: impl FnOnce(&ElasticDisk) -> T) -> Value {
     of(row, |record| record.disk.as_ref().map(read))
+}
+
+fn plastic<T: Into<Value>>(row: &JobRow, read: impl FnOnce(&PlasticFlow) -> T) -> Value {
+    of(row, |record| record.plastic.as_ref().map(read))
 }
 
 fn hysteresis(row: &JobRow, read: impl FnOnce(&Hysteresis) -> f64) -> Value {

@@ -32,6 +32,8 @@ pub enum Freedom {
 pub(in crate::solver) struct EnergySums<const L: usize> {
     pub kinetic_j: [f64; L],
     pub elastic_j: [f64; L],
+    /// Plastic work since the start.
+    pub plastic_j: [f64; L],
     /// Work of the damping forces at t_n over the increment after t_n.
     pub damping_after_j: [f64; L],
     /// Work of the damping forces at t_n over the increment before t_n.
@@ -44,6 +46,7 @@ impl<const L: usize> EnergySums<L> {
     pub const ZERO: Self = Self {
         kinetic_j: [0.0; L],
         elastic_j: [0.0; L],
+        plastic_j: [0.0; L],
         damping_after_j: [0.0; L],
         damping_before_j: [0.0; L],
         numerical_j: [0.0; L],

@@ -13,6 +13,8 @@ const HUGE_STRAIN: f64 = 0.1;
 const TOTAL_STRAIN: f64 = 1.0;
 /// Mean strain from which on the laws of large strains are in doubt.
 const BEYOND_LAWS: f64 = 0.5;
+/// Elastic strain at the yield stress from which on no metal is meant.
+const MOST_ELASTIC: f64 = 0.05;
 /// Sliding speed as a fraction of the speed of surface waves from which on the linear model is in doubt. A node that sticks
 /// moves with the disk, and this fraction is of the order of the strain in the wave that it sends out.
 const FAST: f64 = 0.1;
@@ -53,6 +55,8 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
             ),
         });
     }
+
+    found.extend(flow(spec));
 
     let speed_m_s = disk.omega_rpm * 2.0 * PI / 60.0 * disk.track_radius_m;
     let mut wave_m_s = surface_wave_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
@@ -272,6 +276,33 @@ fn clamp(spec: &JobSpec) -> Option<Doubt> {
                 short(width_m)
             ),
         )
+    })
+}
+
+/// A pin that flows as a whole under its load, and a yield stress that no metal has.
+fn flow(spec: &JobSpec) -> Option<Doubt> {
+    let pin = &spec.scene.pin;
+    let yield_stress_pa = pin.plasticity.as_ref()?.yield_stress_pa;
+    let pressure = spec.scene.load.force_n / (pin.base_area_m2() * yield_stress_pa);
+    let elastic = yield_stress_pa / pin.young_modulus_pa;
+    let doubt = |fields, size, message: String, help: &str| Doubt {
+        kind: "yield",
+        fields: owned(fields),
+        size,
+        message,
+        help: help.to_owned(),
+    };
+    if pressure > 1.0 {
+        let message =
+            format!("the mean pressure is {} times the yield stress: the whole pin flows", short(pressure));
+        let help = "check the units of the load [N], the yield stress [Pa] and the size [m]";
+        let fields = &["scene.load.force_n", "scene.pin.plasticity.yield_stress_pa", "scene.pin.size_m"];
+        return Some(doubt(fields, pressure, message, help));
+    }
+    (elastic > MOST_ELASTIC).then(|| {
+        let message = format!("the material yields at an elastic strain of {}", percent(elastic));
+        let fields = &["scene.pin.plasticity.yield_stress_pa", "scene.pin.young_modulus_pa"];
+        doubt(fields, elastic, message, "check the units [Pa]; metals yield at 0.01 % to 1 %")
     })
 }
 

@@ -33,6 +33,8 @@ pub(in crate::solver) struct PinAudit<const L: usize, R: Number> {
     scratch: Scratch<R>,
     /// Stored energy before the step.
     elastic_j: [f64; L],
+    /// Plastic work before the step, since the start.
+    plastic_j: [f64; L],
     /// Work of damping over the increment before t_n.
     damping_before_j: [f64; L],
     /// Sums of the columns of blocks.
@@ -74,6 +76,7 @@ impl<const L: usize, R: Number> PinAudit<L, R> {
             kp: field(),
             scratch: pin.operator().scratch(pin.mesh().layout(), L),
             elastic_j: [0.0; L],
+            plastic_j: [0.0; L],
             damping_before_j: [0.0; L],
             columns: vec![[R::Totals::default(); SUMS]; field().blocks_per_line()],
             jumps,
@@ -93,12 +96,15 @@ impl<const L: usize, R: Number> PinAudit<L, R> {
         let (operator, dt) = (pin.operator(), scheme.time_step_s);
         let scale = scale_of_damping(scheme);
         // K p overwrites K u below.
+        let totals = |lane| operator.plastic_totals(before.history, lane, L);
+        self.plastic_j = std::array::from_fn(|lane| totals(lane).map_or(0.0, |[work_j, _]| work_j));
         self.elastic_j = operator.stored_j(before.u, before.history, &mut self.kp, &mut self.scratch);
         if scale == 0.0 {
             return;
         }
         let beta_r_s = scheme.beta_r_s;
-        let mut form = operator.damper(before.u, before.p, beta_r_s, &mut self.kp, &mut self.scratch);
+        let mut form =
+            operator.damper(before.u, before.p, before.history, beta_r_s, &mut self.kp, &mut self.scratch);
         if scheme.alpha_r_per_s > 0.0 {
             self.add_mass_damping(scheme, before.p);
             form = before.p.dot(&self.kp);
@@ -172,6 +178,7 @@ impl<const L: usize, R: Number> PinAudit<L, R> {
         let numerical_j = self.numerical_loss(pin, scheme, &sums[INERTIAL_JUMP]);
         add_lanes(&mut total.kinetic_j, &sums[KINETIC]);
         add_lanes(&mut total.elastic_j, &self.elastic_j);
+        add_lanes(&mut total.plastic_j, &self.plastic_j);
         add_lanes(&mut total.damping_after_j, &sums[DAMPING_AFTER]);
         add_lanes(&mut total.damping_before_j, &self.damping_before_j);
         add_lanes(&mut total.numerical_j, &numerical_j);

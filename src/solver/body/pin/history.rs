@@ -5,7 +5,7 @@ use crate::solver::lane::{LaneState, next};
 use crate::solver::number::Number;
 
 /// The numbers that elements keep, in the order element → number → lane. Linear forms keep none.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct History<const L: usize, R: Number>(Vec<R>);
 
 impl<const L: usize, R: Number> History<L, R> {
@@ -16,6 +16,11 @@ impl<const L: usize, R: Number> History<L, R> {
 
     fn of_length(numbers: usize) -> Self {
         Self(vec![R::default(); L * numbers])
+    }
+
+    /// The history of one lane.
+    pub fn of_lane(&self, lane: usize) -> History<1, f64> {
+        History(self.0.iter().skip(lane).step_by(L).map(|number| number.to_f64()).collect())
     }
 
     /// Its numbers.

@@ -25,16 +25,22 @@ use super::hexahedron;
 use crate::solver::error::SolverError;
 use crate::solver::field::Field;
 use crate::solver::material::Material;
-use crate::spec::Hyperelasticity;
-use operator::{AssembledOperator, HyperelasticOperator, Operator, TensorOperator};
+use crate::solver::number::Number;
+use crate::spec::{MaterialLaw, Plasticity};
+use operator::{AssembledOperator, HyperelasticOperator, Operator, Past, TensorOperator};
 
 /// What resists the deformation of the pin.
 #[derive(Debug, Clone)]
 pub enum Stiffness {
     /// Linear elasticity with the materials of the pin.
     Elastic,
-    /// Elasticity with large strains, with the materials of the pin.
-    Hyperelastic(Hyperelasticity),
+    /// Large strains, with the materials of the pin.
+    Hyperelastic {
+        /// The law of the materials.
+        law: MaterialLaw,
+        /// When each material yields; those without stay elastic.
+        plasticity: Vec<Option<Plasticity>>,
+    },
     /// The nodes are point masses joined by these springs. Only the density of the first material is used.
     Springs(AssembledOperator),
 }
@@ -78,12 +84,12 @@ impl PinBody {
                 let (stiffness, masses_kg) = assembled(general, &materials)?;
                 (Operator::Assembled(stiffness), masses_kg)
             }
-            (Stiffness::Hyperelastic(_), PinMesh::Block(_)) => {
+            (Stiffness::Hyperelastic { .. }, PinMesh::Block(_)) => {
                 return Err(SolverError::Mesh("large strains need a general mesh".to_owned()));
             }
-            (Stiffness::Hyperelastic(law), PinMesh::General(general)) => {
+            (Stiffness::Hyperelastic { law, plasticity }, PinMesh::General(general)) => {
                 let (tangent, masses_kg) = assembled(general, &materials)?;
-                let elements = HyperelasticOperator::new(general, &materials, law)
+                let elements = HyperelasticOperator::new(general, &materials, law, &plasticity)
                     .map_err(|index| inverted(general.name(index)))?;
                 (Operator::Hyperelastic { elements, tangent }, masses_kg)
             }
@@ -153,9 +159,9 @@ impl PinBody {
 
     /// The largest angular frequency \[rad/s\] with these displacements, at most 2.5 % too low and never too high; returns `None` if the
     /// displacements do not change it.
-    pub fn deformed_omega_max_rad_s(&self, u: &Field<1>) -> Option<f64> {
+    pub fn deformed_omega_max_rad_s(&self, u: &Field<1>, history: &History<1, f64>) -> Option<f64> {
         let layout = self.mesh.layout();
-        self.operator.deformed_omega_max(layout, &self.masses_kg, &self.freedoms, u)
+        self.operator.deformed_omega_max(layout, &self.masses_kg, &self.freedoms, u, history.numbers())
     }
 
     /// Upper bound of the largest angular frequency \[rad/s\] of the supported pin.
@@ -167,8 +173,31 @@ impl PinBody {
     ///
     /// # Panics
     /// If there are not three displacements per node.
-    pub fn nodal_stress_pa(&self, u_m: &[f64]) -> Vec<[f64; 6]> {
-        stress::nodal_pa(&self.mesh, &self.materials, self.operator.law(), u_m)
+    pub fn nodal_stress_pa(&self, u_m: &[f64], history: &History<1, f64>) -> Vec<[f64; 6]> {
+        let yielding = self.operator.yielding().map(|yielding| (yielding, history.numbers()));
+        stress::nodal_pa(&self.mesh, &self.materials, self.operator.law(), yielding, u_m)
+    }
+
+    /// Plastic strain at every node; returns `None` if no material yields.
+    pub fn nodal_plastic_strain(&self, history: &History<1, f64>) -> Option<Vec<f64>> {
+        let (yielding, PinMesh::General(mesh)) = (self.operator.yielding()?, &self.mesh) else { return None };
+        let of_element =
+            |element: usize| yielding.points(history.numbers(), element).map(|point| [point.strain]);
+        Some(stress::nodal_means(mesh, of_element).into_iter().map(|[strain]| strain).collect())
+    }
+
+    /// What the elements of an undeformed pin keep of their past.
+    pub fn new_history<const L: usize, R: Number>(&self) -> History<L, R> {
+        History::new(&self.operator)
+    }
+
+    /// The internal forces \[N\] of displacements \[m\] in the order node → component at the end of a time step, which the history follows.
+    /// It serves tests.
+    ///
+    /// # Panics
+    /// If there are not three values per node.
+    pub fn followed_n(&self, u_m: &[f64], history: &mut History<1, f64>, time_step_s: f64) -> Vec<f64> {
+        self.internal_of_n(u_m, Past::Followed { history: history.numbers_mut(), time_step_s })
     }
 
     /// K x of one lane (\[N\] for x in \[m\]), both in the order node → component. It serves inspection and tests;
@@ -189,10 +218,23 @@ impl PinBody {
     /// # Panics
     /// If there are not three values per node.
     pub fn internal_n(&self, u_m: &[f64]) -> Vec<f64> {
+        self.internal_after_n(u_m, &self.new_history())
+    }
+
+    /// The same with what the elements keep of their past, for an elastic change.
+    ///
+    /// # Panics
+    /// If there are not three values per node.
+    pub fn internal_after_n(&self, u_m: &[f64], history: &History<1, f64>) -> Vec<f64> {
+        self.internal_of_n(u_m, Past::Kept(history.numbers()))
+    }
+
+    fn internal_of_n(&self, u_m: &[f64], past: Past<'_, f64>) -> Vec<f64> {
         let layout = self.mesh.layout();
         let mut force = Field::<1>::zeros(layout);
         self.operator.internal_n(
             &Field::from_values(layout, u_m),
+            past,
             &mut force,
             &mut self.operator.scratch(layout, 1),
         );
@@ -204,10 +246,18 @@ impl PinBody {
     /// # Panics
     /// If there are not three values per node.
     pub fn stored_j(&self, u_m: &[f64]) -> f64 {
+        self.stored_after_j(u_m, &self.new_history())
+    }
+
+    /// The same with what the elements keep of their past.
+    ///
+    /// # Panics
+    /// If there are not three values per node.
+    pub fn stored_after_j(&self, u_m: &[f64], history: &History<1, f64>) -> f64 {
         let layout = self.mesh.layout();
         let u = Field::<1>::from_values(layout, u_m);
         let scratch = &mut self.operator.scratch(layout, 1);
-        let [energy_j] = self.operator.stored_j(&u, &[], &mut Field::zeros(layout), scratch);
+        let [energy_j] = self.operator.stored_j(&u, history.numbers(), &mut Field::zeros(layout), scratch);
         energy_j
     }
 

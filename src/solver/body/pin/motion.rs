@@ -13,7 +13,7 @@
 
 use super::PinBody;
 use super::line_table::LineTable;
-use super::operator::{BlockIndex, Moving, Operator, Scratch};
+use super::operator::{BlockIndex, Moving, Operator, Past, Scratch};
 use crate::solver::body::Freedom;
 use crate::solver::field::{Block, FieldOf};
 use crate::solver::number::Number;
@@ -113,7 +113,8 @@ impl<const L: usize, R: Number> NodeMotion<L, R> {
             p: p.blocks_mut(),
             residual: self.residual.blocks_mut(),
         };
-        advance.run(pin.operator(), history, &mut self.scratch);
+        let past = Past::Followed { history, time_step_s: factors.time_step_s };
+        advance.run(pin.operator(), past, &mut self.scratch);
     }
 
     /// Moves the constrained planes above the contact face by their residual.
@@ -176,8 +177,8 @@ struct Advance<'a, R: Number> {
 }
 
 impl<R: Number> Advance<'_, R> {
-    fn run(&mut self, operator: &Operator, history: &mut [R], scratch: &mut Scratch<R>) {
-        dispatch!(simd => operator.force(simd, self, history, scratch));
+    fn run(&mut self, operator: &Operator, past: Past<'_, R>, scratch: &mut Scratch<R>) {
+        dispatch!(simd => operator.force(simd, self, past, scratch));
     }
 }
 

@@ -1,9 +1,10 @@
 //! Stress at the nodes of a pin, for output. No time step uses it.
 
+use super::operator::Yielding;
 use super::{BlockMesh, GeneralMesh, PinMesh};
 use crate::solver::body::hexahedron::{corner_gradients, gauss_gradients};
 use crate::solver::material::Material;
-use crate::spec::{Element, Hyperelasticity};
+use crate::spec::{Element, MaterialLaw};
 use nalgebra::{Matrix3, Vector3};
 
 /// Names of the components of a stress, in their order.
@@ -17,20 +18,22 @@ pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 /// second order; the strains of the elements are only of first order there. So they are exact for displacements
 /// that are quadratic in the coordinates, on meshes with at least two elements in each direction.
 ///
-/// On a general mesh the stress of a node is the mean of the stresses that its elements have there. With large strains it is Cauchy's.
+/// On a general mesh the stress of a node is the mean of the stresses that its elements have there. With large strains it is Cauchy's. An
+/// element that may yield has at a node the stress of the nearest Gauss point, where what it keeps of its past is known.
 ///
 /// # Panics
 /// If there are not three displacements per node.
 pub(super) fn nodal_pa(
     mesh: &PinMesh,
     materials: &[Material],
-    law: Option<Hyperelasticity>,
+    law: Option<MaterialLaw>,
+    yielding: Option<(&Yielding, &[f64])>,
     u_m: &[f64],
 ) -> Vec<[f64; 6]> {
     assert_eq!(u_m.len(), 3 * mesh.node_count(), "three displacements per node");
     match mesh {
         PinMesh::Block(mesh) => of_block_pa(mesh, &materials[0], u_m),
-        PinMesh::General(mesh) => of_elements_pa(mesh, materials, law, u_m),
+        PinMesh::General(mesh) => of_elements_pa(mesh, materials, law, yielding, u_m),
     }
 }
 
@@ -38,20 +41,29 @@ pub(super) fn nodal_pa(
 /// tr ε or tr E, or J − 1 of the neo-Hookean law.
 fn stress_pa(
     material: &Material,
-    law: Option<Hyperelasticity>,
+    law: Option<MaterialLaw>,
     h: &Matrix3<f64>,
+    plastic: &Matrix3<f64>,
     dilation: f64,
 ) -> Matrix3<f64> {
     let (lambda, shear) = (material.lame_lambda_pa(), material.shear_modulus_pa());
     let f = h + Matrix3::identity();
     match law {
         None => (h + h.transpose()) * shear + Matrix3::identity() * (lambda * dilation),
-        Some(Hyperelasticity::NeoHookean) => {
+        Some(MaterialLaw::NeoHookean) => {
             let along = 0.5 * lambda * (1.0 + dilation - 1.0 / (1.0 + dilation));
             (f * f.transpose() - Matrix3::identity()) * (shear / f.determinant())
                 + Matrix3::identity() * along
         }
-        Some(Hyperelasticity::StVenantKirchhoff) => {
+        Some(MaterialLaw::J2) => {
+            let volume = f.determinant();
+            let elastic = f * (plastic + Matrix3::identity()) * f.transpose();
+            let deviator = elastic - Matrix3::identity() * (elastic.trace() / 3.0);
+            let bulk = lambda + 2.0 / 3.0 * shear;
+            let along = 0.5 * bulk * (1.0 + dilation - 1.0 / (1.0 + dilation));
+            deviator * (shear * libm::pow(volume, -5.0 / 3.0)) + Matrix3::identity() * along
+        }
+        Some(MaterialLaw::StVenantKirchhoff) => {
             let second = green_strain(h) * (2.0 * shear) + Matrix3::identity() * (lambda * dilation);
             f * second * f.transpose() / f.determinant()
         }
@@ -64,25 +76,29 @@ fn green_strain(h: &Matrix3<f64>) -> Matrix3<f64> {
 }
 
 /// What the term of a law with λ depends on: tr ε, tr E or J − 1.
-fn dilation(law: Option<Hyperelasticity>, h: &Matrix3<f64>) -> f64 {
+fn dilation(law: Option<MaterialLaw>, h: &Matrix3<f64>) -> f64 {
     match law {
         None => h.trace(),
-        Some(Hyperelasticity::NeoHookean) => (h + Matrix3::identity()).determinant() - 1.0,
-        Some(Hyperelasticity::StVenantKirchhoff) => green_strain(h).trace(),
+        Some(MaterialLaw::NeoHookean | MaterialLaw::J2) => (h + Matrix3::identity()).determinant() - 1.0,
+        Some(MaterialLaw::StVenantKirchhoff) => green_strain(h).trace(),
     }
 }
 
 fn of_elements_pa(
     mesh: &GeneralMesh,
     materials: &[Material],
-    law: Option<Hyperelasticity>,
+    law: Option<MaterialLaw>,
+    yielding: Option<(&Yielding, &[f64])>,
     u_m: &[f64],
 ) -> Vec<[f64; 6]> {
-    let mut sums = vec![([0.0; 6], 0.0); mesh.node_count()];
-    for element in mesh.elements() {
+    nodal_means(mesh, |number| {
+        let element = &mesh.elements()[number];
         let material = &materials[element.material];
         let corners = mesh.corners_m(element);
-        let Some(gradients) = corner_gradients(&corners) else { continue };
+        let points = || gauss_gradients(&corners).map(|points| points.map(|(gradients, _)| gradients));
+        let places = if yielding.is_some() { points() } else { corner_gradients(&corners) };
+        let Some(places) = places else { return [[0.0; 6]; 8] };
+        let plastic = yielding.map(|(yielding, history)| yielding.points(history, number));
         // ∂u_i/∂x_j
         let gradient = |gradients: &[Vector3<f64>; 8]| {
             Matrix3::<f64>::from_fn(|i, j| {
@@ -98,13 +114,26 @@ fn of_elements_pa(
                 };
                 points.iter().map(part).sum::<f64>() / volume
             });
-        for (&node, gradients) in element.nodes.iter().zip(&gradients) {
-            let h = gradient(gradients);
-            let found = stress_pa(material, law, &h, mean.unwrap_or_else(|| dilation(law, &h)));
+        std::array::from_fn(|corner| {
+            let h = gradient(&places[corner]);
+            let plastic = plastic.map_or_else(Matrix3::zeros, |points| points[corner].plastic);
+            let found = stress_pa(material, law, &h, &plastic, mean.unwrap_or_else(|| dilation(law, &h)));
             let stress = |i: usize, j: usize| found[(i, j)];
-            let all = [stress(0, 0), stress(1, 1), stress(2, 2), stress(0, 1), stress(1, 2), stress(0, 2)];
+            [stress(0, 0), stress(1, 1), stress(2, 2), stress(0, 1), stress(1, 2), stress(0, 2)]
+        })
+    })
+}
+
+/// The means over the elements at every node of what they have there. An element has eight values, one for each corner.
+pub(super) fn nodal_means<const N: usize>(
+    mesh: &GeneralMesh,
+    of_element: impl Fn(usize) -> [[f64; N]; 8],
+) -> Vec<[f64; N]> {
+    let mut sums = vec![([0.0; N], 0.0); mesh.node_count()];
+    for (number, element) in mesh.elements().iter().enumerate() {
+        for (&node, values) in element.nodes.iter().zip(of_element(number)) {
             let (sum, count) = &mut sums[node];
-            for (sum, value) in sum.iter_mut().zip(all) {
+            for (sum, value) in sum.iter_mut().zip(values) {
                 *sum += value;
             }
             *count += 1.0;
@@ -172,7 +201,9 @@ mod tests {
         let field = |[x, y, z]: [f64; 3]| [x * x + 2.0 * y * z, 3.0 * y - x * z, z * z + 0.5 * x * y];
         let u: Vec<f64> = (0..mesh.node_count()).flat_map(|node| field(mesh.coordinates_m(node))).collect();
         let (lambda, shear) = (MATERIAL.lame_lambda_pa(), MATERIAL.shear_modulus_pa());
-        for (node, found) in nodal_pa(&mesh.clone().into(), &[MATERIAL], None, &u).into_iter().enumerate() {
+        for (node, found) in
+            nodal_pa(&mesh.clone().into(), &[MATERIAL], None, None, &u).into_iter().enumerate()
+        {
             let [x, y, z] = mesh.coordinates_m(node);
             let dilation = lambda * (2.0 * x + 3.0 + 2.0 * z);
             let exact = [

@@ -18,59 +18,56 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::gradient::{Tensor, cofactor, deformed, green_strain};
+use super::gradient::{
+    Corners, OF_POINT, Slopes, across, cofactor, deformed, gradient, green_strain, slopes_of, spread,
+};
 use super::node_scratch::NodeScratch;
-use super::{Pass, Product, Scratch, ScratchOf};
+use super::yielding::Yielding;
+use super::{Pass, Past, Product, Scratch, ScratchOf};
 use crate::solver::body::hexahedron::gauss_jacobians;
 use crate::solver::body::pin::GeneralMesh;
 use crate::solver::field::FieldOf;
 use crate::solver::material::Material;
 use crate::solver::number::Number;
 use crate::solver::simd::dispatch;
-use crate::spec::{Element, Hyperelasticity};
+use crate::spec::{Element, MaterialLaw, Plasticity};
 use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// Slots of a vector.
-const WIDTH: usize = 8;
+pub(super) const WIDTH: usize = 8;
 
 const DOUBLE: &str = "large strains are computed in double precision";
 
-/// Numbers of a Gauss point: the derivatives ∂ξ_a/∂X_j \[1/m\] in the unit cube, and its volume \[m³\].
-const OF_POINT: usize = 10;
-
 /// Places of the numbers of an element behind those of its points: λ \[Pa\], G \[Pa\] and 1/V \[1/m³\].
-const LAMBDA: usize = 8 * OF_POINT;
-const SHEAR: usize = LAMBDA + 1;
+pub(super) const LAMBDA: usize = 8 * OF_POINT;
+pub(super) const SHEAR: usize = LAMBDA + 1;
 const INVERSE_VOLUME: usize = LAMBDA + 2;
-const NUMBERS: usize = LAMBDA + 3;
-
-/// Weights of the near and of the far corner at a Gauss point, along each axis.
-const NEAR: f64 = 0.5 + 0.288_675_134_594_812_9;
-const FAR: f64 = 0.5 - 0.288_675_134_594_812_9;
+pub(super) const NUMBERS: usize = LAMBDA + 3;
 
 /// Elements with large strains.
 #[derive(Debug, Clone)]
 pub struct HyperelasticOperator {
-    law: Hyperelasticity,
-    is_selective: bool,
+    law: MaterialLaw,
+    pub(super) is_selective: bool,
     nodes: Vec<[u32; 8]>,
     /// The numbers of eight elements side by side: group → number → element of the group. The last group is filled up with its last
     /// element.
     numbers: Vec<[f64; WIDTH]>,
+    /// When elements yield; none if no material does.
+    yielding: Option<Yielding>,
 }
 
-/// The vectors of one value per corner.
-type Corners<S> = [[f64x8<S>; 3]; 8];
-
-/// Derivatives along the axes of the unit cube, at the four Gauss points across each axis: axis → point → component.
-type Slopes<S> = [[[f64x8<S>; 3]; 4]; 3];
-
 impl HyperelasticOperator {
-    /// The elements of a mesh.
+    /// The elements of a mesh. There is one entry of `yielding` for each material that yields; the others stay elastic.
     ///
     /// # Errors
     /// The number of an element that is inverted.
-    pub fn new(mesh: &GeneralMesh, materials: &[Material], law: Hyperelasticity) -> Result<Self, usize> {
+    pub fn new(
+        mesh: &GeneralMesh,
+        materials: &[Material],
+        law: MaterialLaw,
+        yielding: &[Option<Plasticity>],
+    ) -> Result<Self, usize> {
         let count = mesh.elements().len();
         let mut numbers = vec![[0.0; WIDTH]; count.div_ceil(WIDTH) * NUMBERS];
         for slot in 0..count.next_multiple_of(WIDTH) {
@@ -97,11 +94,17 @@ impl HyperelasticOperator {
         }
         let is_selective = mesh.element == Element::Selective;
         let nodes = mesh.elements().iter().map(|element| element.nodes.map(|node| node as u32)).collect();
-        Ok(Self { law, is_selective, nodes, numbers })
+        let yielding = (law == MaterialLaw::J2).then(|| Yielding::new(mesh, yielding));
+        Ok(Self { law, is_selective, nodes, numbers, yielding })
+    }
+
+    /// When elements yield; none if no material does.
+    pub fn yielding(&self) -> Option<&Yielding> {
+        self.yielding.as_ref()
     }
 
     /// The law.
-    pub fn law(&self) -> Hyperelasticity {
+    pub fn law(&self) -> MaterialLaw {
         self.law
     }
 
@@ -114,15 +117,25 @@ impl HyperelasticOperator {
         &self,
         simd: S,
         pass: &mut impl Pass<S, R>,
+        past: &mut Past<'_, R>,
         scratch: &mut NodeScratch<R>,
     ) {
         scratch.read(simd, pass);
         scratch.clear();
         let lanes = scratch.lanes;
-        let [x, y] = scratch.fields();
+        if self.yielding.is_some() {
+            scratch.read_undamped(simd, pass);
+        }
+        let ([x, y], undamped) = scratch.all_fields();
         let (Some(x), Some(y)) = (R::doubles(x), R::doubles(y)) else { panic!("{DOUBLE}") };
         // One function for all passes: it is long.
-        self.add_forces(lanes, x, y);
+        match &self.yielding {
+            None => self.add_forces(lanes, x, y),
+            Some(yielding) => {
+                let undamped = R::as_doubles(undamped).unwrap_or_default();
+                yielding.add_forces(self, lanes, [x, undamped], y, &mut past.doubles());
+            }
+        }
         for line in 0..scratch.layout.lines() {
             scratch.give(simd, line, pass);
         }
@@ -168,6 +181,7 @@ impl HyperelasticOperator {
     pub(super) fn state_of<const L: usize, R: Number>(
         &self,
         u: &FieldOf<L, R>,
+        history: &[R],
         work: &mut FieldOf<L, R>,
         scratch: &mut Scratch<R>,
     ) -> ([f64; WIDTH], [Option<usize>; WIDTH]) {
@@ -176,17 +190,21 @@ impl HyperelasticOperator {
         let pass = Product { x: u.blocks(), y: work.blocks_mut(), forms };
         dispatch!(simd => nodes.read(simd, &pass));
         let [x, _] = nodes.fields();
-        let Some(x) = R::doubles(x) else { panic!("{DOUBLE}") };
-        self.state(L, x)
+        let (Some(x), Some(history)) = (R::doubles(x), R::as_doubles(history)) else { panic!("{DOUBLE}") };
+        self.state(L, x, history)
     }
 
-    fn state(&self, lanes: usize, x: &[f64]) -> ([f64; WIDTH], [Option<usize>; WIDTH]) {
+    fn state(&self, lanes: usize, x: &[f64], history: &[f64]) -> ([f64; WIDTH], [Option<usize>; WIDTH]) {
         let (mut energy_j, mut inverted) = ([0.0; WIDTH], [None; WIDTH]);
         for first in (0..self.nodes.len()).step_by(WIDTH / lanes) {
             let (energies, volumes) = dispatch!(simd => {
                 let mut u = [[f64x8::splat(simd, 0.0); 3]; 8];
                 self.corners(first, lanes, x, &mut u);
-                self.energy(simd, |number| self.of_some(simd, first, number, lanes), &u)
+                let numbers = |number| self.of_some(simd, first, number, lanes);
+                match &self.yielding {
+                    None => self.energy(simd, numbers, &u),
+                    Some(yielding) => yielding.energy(simd, self, numbers, &u, history, [first, lanes]),
+                }
             });
             for slot in 0..WIDTH {
                 let (element, lane) = (first + slot / lanes, slot % lanes);
@@ -211,15 +229,24 @@ impl HyperelasticOperator {
     }
 
     #[inline(always)]
-    fn of_some<S: Simd>(&self, simd: S, first: usize, number: usize, lanes: usize) -> f64x8<S> {
+    pub(super) fn of_some<S: Simd>(&self, simd: S, first: usize, number: usize, lanes: usize) -> f64x8<S> {
         let all = self.of_all(first, number);
         let row: [f64; WIDTH] = std::array::from_fn(|slot| all[first % WIDTH + slot / lanes]);
         f64x8::load_array(simd, row)
     }
 
+    /// The numbers of a group of elements, slot by slot.
+    #[inline(always)]
+    pub(super) fn rows(&self, first: usize, lanes: usize, rows: &mut [[f64; WIDTH]; NUMBERS]) {
+        for (number, row) in rows.iter_mut().enumerate() {
+            let all = self.of_all(first, number);
+            *row = std::array::from_fn(|slot| all[first % WIDTH + slot / lanes]);
+        }
+    }
+
     /// The displacements of the corners of a group of elements.
     #[inline(always)]
-    fn corners<S: Simd>(&self, first: usize, lanes: usize, x: &[f64], u: &mut Corners<S>) {
+    pub(super) fn corners<S: Simd>(&self, first: usize, lanes: usize, x: &[f64], u: &mut Corners<S>) {
         let simd = u[0][0].simd;
         for corner in 0..8 {
             for c in 0..3 {
@@ -239,7 +266,7 @@ impl HyperelasticOperator {
 
     /// Adds the forces of a group to its nodes, element after element.
     #[inline(always)]
-    fn add<S: Simd>(&self, first: usize, force: &Corners<S>, lanes: usize, y: &mut [f64]) {
+    pub(super) fn add<S: Simd>(&self, first: usize, force: &Corners<S>, lanes: usize, y: &mut [f64]) {
         if lanes == WIDTH {
             for (corner, &node) in self.nodes[first].iter().enumerate() {
                 for c in 0..3 {
@@ -279,7 +306,7 @@ impl HyperelasticOperator {
         for point in 0..8 {
             let h = gradient(simd, &number, &slopes, point);
             let p = match self.law {
-                Hyperelasticity::NeoHookean => {
+                MaterialLaw::NeoHookean | MaterialLaw::J2 => {
                     // P = G (F − (∂J/∂F)/J) + ½λ (θ − 1/θ) ∂J/∂F, with 1 + j = J, 1 + t = θ and ∂J/∂F = 1 + K.
                     let (k, j) = cofactor(&h);
                     let t = mean.unwrap_or(j);
@@ -297,7 +324,7 @@ impl HyperelasticOperator {
                     }
                     p
                 }
-                Hyperelasticity::StVenantKirchhoff => {
+                MaterialLaw::StVenantKirchhoff => {
                     let mut stress = green_strain(simd, &h);
                     let trace = mean.unwrap_or(stress[0][0] + stress[1][1] + stress[2][2]);
                     let (double, pressure) = (shear + shear, lambda * trace);
@@ -358,16 +385,16 @@ impl HyperelasticOperator {
                 volume[slot] += weight[slot];
                 // `at` is J − 1, or tr E.
                 let dilation = |at: f64| match self.law {
-                    Hyperelasticity::NeoHookean => {
+                    MaterialLaw::NeoHookean | MaterialLaw::J2 => {
                         0.25 * lambda[slot] * (at * (2.0 + at) - 2.0 * libm::log1p(at))
                     }
-                    Hyperelasticity::StVenantKirchhoff => 0.5 * lambda[slot] * at * at,
+                    MaterialLaw::StVenantKirchhoff => 0.5 * lambda[slot] * at * at,
                 };
                 let (at, distortion) = match self.law {
-                    Hyperelasticity::NeoHookean => {
+                    MaterialLaw::NeoHookean | MaterialLaw::J2 => {
                         (j[slot], shear[slot] * (trace[slot] - libm::log1p(j[slot])))
                     }
-                    Hyperelasticity::StVenantKirchhoff => (trace[slot], shear[slot] * square[slot]),
+                    MaterialLaw::StVenantKirchhoff => (trace[slot], shear[slot] * square[slot]),
                 };
                 let own = if self.is_selective { 0.0 } else { dilation(at) };
                 energy_j[slot] += weight[slot] * (distortion + own);
@@ -381,13 +408,18 @@ impl HyperelasticOperator {
 
     /// The mean over an element of what the term of the law with λ depends on: J − 1, or tr E.
     #[inline(always)]
-    fn mean<S: Simd>(&self, simd: S, number: &impl Fn(usize) -> f64x8<S>, slopes: &Slopes<S>) -> f64x8<S> {
+    pub(super) fn mean<S: Simd>(
+        &self,
+        simd: S,
+        number: &impl Fn(usize) -> f64x8<S>,
+        slopes: &Slopes<S>,
+    ) -> f64x8<S> {
         let mut sum = f64x8::splat(simd, 0.0);
         for point in 0..8 {
             let h = gradient(simd, number, slopes, point);
             let value = match self.law {
-                Hyperelasticity::NeoHookean => cofactor(&h).1,
-                Hyperelasticity::StVenantKirchhoff => {
+                MaterialLaw::NeoHookean | MaterialLaw::J2 => cofactor(&h).1,
+                MaterialLaw::StVenantKirchhoff => {
                     let strain = green_strain(simd, &h);
                     strain[0][0] + strain[1][1] + strain[2][2]
                 }
@@ -396,85 +428,4 @@ impl HyperelasticOperator {
         }
         sum * number(INVERSE_VOLUME)
     }
-}
-
-/// The two axes across one, ascending.
-const ACROSS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
-
-/// The number, of the four across an axis, of a Gauss point or of an edge at a corner.
-#[inline(always)]
-fn across(point: usize, axis: usize) -> usize {
-    let [b, c] = ACROSS[axis];
-    (point >> b & 1) | (point >> c & 1) << 1
-}
-
-/// The derivatives of the displacements along the axes of the unit cube.
-#[inline(always)]
-fn slopes_of<S: Simd>(simd: S, u: &Corners<S>, slopes: &mut Slopes<S>) {
-    for axis in 0..3 {
-        for corner in 0..8 {
-            if corner >> axis & 1 == 0 {
-                for c in 0..3 {
-                    slopes[axis][across(corner, axis)][c] = u[corner | 1 << axis][c] - u[corner][c];
-                }
-            }
-        }
-        between(simd, &mut slopes[axis]);
-    }
-}
-
-/// The forces on the corners of what is at the Gauss points. It is the transpose of [`slopes_of`].
-#[inline(always)]
-fn spread<S: Simd>(simd: S, sums: &mut Slopes<S>, force: &mut Corners<S>) {
-    for axis in 0..3 {
-        between(simd, &mut sums[axis]);
-    }
-    for corner in 0..8 {
-        for c in 0..3 {
-            let mut total = f64x8::splat(simd, 0.0);
-            for axis in 0..3 {
-                let value = sums[axis][across(corner, axis)][c];
-                if corner >> axis & 1 == 0 {
-                    total -= value;
-                } else {
-                    total += value;
-                }
-            }
-            force[corner][c] = total;
-        }
-    }
-}
-
-/// Goes from four edges to the Gauss points between them, or back: the weights are symmetric.
-#[inline(always)]
-fn between<S: Simd>(simd: S, values: &mut [[f64x8<S>; 3]; 4]) {
-    let (near, far) = (f64x8::splat(simd, NEAR), f64x8::splat(simd, FAR));
-    for [a, b] in [[0, 1], [2, 3], [0, 2], [1, 3]] {
-        for c in 0..3 {
-            let (first, second) = (values[a][c], values[b][c]);
-            values[a][c] = near * first + far * second;
-            values[b][c] = far * first + near * second;
-        }
-    }
-}
-
-/// H at a Gauss point.
-#[inline(always)]
-fn gradient<S: Simd>(
-    simd: S,
-    number: &impl Fn(usize) -> f64x8<S>,
-    slopes: &Slopes<S>,
-    point: usize,
-) -> Tensor<S> {
-    let mut h = [[f64x8::splat(simd, 0.0); 3]; 3];
-    for j in 0..3 {
-        let at = point * OF_POINT + j;
-        let [x, y, z] = [number(at), number(at + 3), number(at + 6)];
-        for i in 0..3 {
-            h[i][j] = slopes[0][across(point, 0)][i] * x
-                + slopes[1][across(point, 1)][i] * y
-                + slopes[2][across(point, 2)][i] * z;
-        }
-    }
-    h
 }

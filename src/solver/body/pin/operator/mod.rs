@@ -6,7 +6,7 @@
 //! * [`TensorOperator`] – K of a uniform elastic block as a sum of tensor products. It is the fastest form.
 //! * [`AssembledOperator`] – any symmetric K, by pairs of nodes. It serves general meshes, discrete springs and masses, and the
 //!   tests compare the other form with it.
-//! * [`HyperelasticOperator`] – elastic elements with large strains.
+//! * [`HyperelasticOperator`] – elements with large strains, which may yield.
 //!
 //! The first two are linear: forces are K (u + β_R p), the energy is ½u·Ku, and there is no history. They give K x block by block in one
 //! pass over the mesh, which is the only product with K. With large strains the forces of damping and deformation are those of the
@@ -16,15 +16,21 @@ mod assembled;
 mod gradient;
 mod hyperelastic;
 mod node_scratch;
+mod past;
+mod return_mapping;
 mod tensor;
 #[cfg(test)]
 mod tests;
+mod yielding;
 
 pub use assembled::AssembledOperator;
 pub use hyperelastic::HyperelasticOperator;
 use node_scratch::NodeScratch;
+pub use past::Past;
+pub use return_mapping::PointState;
 pub use tensor::TensorOperator;
 use tensor::TensorScratch;
+pub use yielding::Yielding;
 
 use super::bound::{omega_max_bound, omega_max_bound_of_springs};
 use super::lanczos;
@@ -32,7 +38,7 @@ use crate::solver::body::Freedom;
 use crate::solver::field::{Block, Field, FieldOf, Layout, add_slots, blocks_per_line};
 use crate::solver::number::Number;
 use crate::solver::simd::{dispatch, load_all};
-use crate::spec::Hyperelasticity;
+use crate::spec::MaterialLaw;
 use fearless_simd::{Simd, prelude::*};
 
 /// The forms of what resists the deformation.
@@ -44,7 +50,7 @@ pub enum Operator {
     Assembled(AssembledOperator),
     /// Springs between point masses, by pairs of nodes.
     Springs(AssembledOperator),
-    /// Elastic elements with large strains.
+    /// Elements with large strains.
     Hyperelastic {
         /// The elements.
         elements: HyperelasticOperator,
@@ -84,6 +90,10 @@ trait Pass<S: Simd, R: Number> {
     /// Takes the three components of the internal forces of x in a block; those of linear elements are K x. The inputs of its plane and of
     /// those below are not read again, so it may overwrite them. Planes come in their order.
     fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]);
+    /// The input without the displacements of damping in block `at`; none if there are none of damping.
+    fn undamped(&self, _simd: S, _at: usize) -> Option<[R::Vector<S>; 3]> {
+        None
+    }
 }
 
 /// Scratch of the passes of an operator.
@@ -118,7 +128,7 @@ impl Operator {
     }
 
     /// The law of elements with large strains; returns `None` for linear forces.
-    pub fn law(&self) -> Option<Hyperelasticity> {
+    pub fn law(&self) -> Option<MaterialLaw> {
         match self {
             Self::Hyperelastic { elements, .. } => Some(elements.law()),
             Self::Tensor(_) | Self::Assembled(_) | Self::Springs(_) => None,
@@ -128,8 +138,20 @@ impl Operator {
     /// Number of numbers that all elements together keep of their past, in each lane.
     pub fn history_len(&self) -> usize {
         match self {
-            Self::Tensor(_) | Self::Assembled(_) | Self::Springs(_) | Self::Hyperelastic { .. } => 0,
+            Self::Hyperelastic { elements, .. } => elements.yielding().map_or(0, Yielding::history_len),
+            Self::Tensor(_) | Self::Assembled(_) | Self::Springs(_) => 0,
         }
+    }
+
+    /// The elements that yield; returns `None` if no material does.
+    pub fn yielding(&self) -> Option<&Yielding> {
+        let Self::Hyperelastic { elements, .. } = self else { return None };
+        elements.yielding()
+    }
+
+    /// The plastic work \[J\] of a lane since its start, and its largest plastic strain; returns `None` if no material yields.
+    pub fn plastic_totals<R: Number>(&self, history: &[R], lane: usize, lanes: usize) -> Option<[f64; 2]> {
+        Some(self.yielding()?.totals(R::as_doubles(history)?, lane, lanes))
     }
 
     /// Gives the internal forces of damping and deformation to the nodes that they move, in one pass over the mesh. The history follows
@@ -143,15 +165,16 @@ impl Operator {
         &self,
         simd: S,
         nodes: &mut impl Moving<S, R>,
-        history: &mut [R],
+        mut past: Past<'_, R>,
         scratch: &mut Scratch<R>,
     ) {
-        debug_assert_eq!(
-            history.len(),
-            self.history_len() * scratch.lanes,
-            "the history of another operator"
-        );
-        self.pass(simd, &mut Damped(nodes), scratch);
+        self.assert_own(past.history(), scratch);
+        self.pass(simd, &mut Damped(nodes), &mut past, scratch);
+    }
+
+    fn assert_own<R: Number>(&self, history: &[R], scratch: &Scratch<R>) {
+        let own = self.history_len() * scratch.lanes;
+        debug_assert_eq!(history.len(), own, "the history of another operator");
     }
 
     /// The energy \[J\] that the deformation stores, in each lane; NaN if an element is inverted. It overwrites `work`.
@@ -165,13 +188,9 @@ impl Operator {
         work: &mut FieldOf<L, R>,
         scratch: &mut Scratch<R>,
     ) -> [f64; L] {
-        debug_assert_eq!(
-            history.len(),
-            self.history_len() * scratch.lanes,
-            "the history of another operator"
-        );
+        self.assert_own(history, scratch);
         if let Self::Hyperelastic { elements, .. } = self {
-            let (energy_j, inverted) = elements.state_of(u, work, scratch);
+            let (energy_j, inverted) = elements.state_of(u, history, work, scratch);
             return std::array::from_fn(
                 |lane| {
                     if inverted[lane].is_some() { f64::NAN } else { energy_j[lane] }
@@ -188,12 +207,13 @@ impl Operator {
     pub fn internal_n<const L: usize, R: Number>(
         &self,
         u: &FieldOf<L, R>,
+        mut past: Past<'_, R>,
         force: &mut FieldOf<L, R>,
         scratch: &mut Scratch<R>,
     ) {
         let mut forms = std::mem::take(&mut scratch.forms);
         let mut product = Product { x: u.blocks(), y: force.blocks_mut(), forms: &mut forms };
-        dispatch!(simd => self.pass(simd, &mut product, scratch));
+        dispatch!(simd => self.pass(simd, &mut product, &mut past, scratch));
         scratch.forms = forms;
     }
 
@@ -205,6 +225,7 @@ impl Operator {
         &self,
         u: &FieldOf<L, R>,
         p: &FieldOf<L, R>,
+        history: &[R],
         beta_r_s: f64,
         force: &mut FieldOf<L, R>,
         scratch: &mut Scratch<R>,
@@ -217,8 +238,8 @@ impl Operator {
             return [0.0; L];
         }
         let mut unmoved = force.clone();
-        self.internal_n(u, &mut unmoved, scratch);
-        self.internal_n(&moved(u, beta_r_s, p), force, scratch);
+        self.internal_n(u, Past::Kept(history), &mut unmoved, scratch);
+        self.internal_n(&moved(u, beta_r_s, p), Past::Kept(history), force, scratch);
         change_over(beta_r_s, force, &unmoved);
         force.clear_padding();
         p.dot(force)
@@ -227,7 +248,9 @@ impl Operator {
     /// The number of the first element that these displacements invert; returns `None` if there is none, and for linear elements.
     pub fn inverted_element(&self, layout: Layout, u: &Field<1>) -> Option<usize> {
         let Self::Hyperelastic { elements, .. } = self else { return None };
-        elements.state_of(u, &mut Field::zeros(layout), &mut self.scratch(layout, 1)).1[0]
+        // What has yielded does not change the volume.
+        let history = vec![0.0; self.history_len()];
+        elements.state_of(u, &history, &mut Field::zeros(layout), &mut self.scratch(layout, 1)).1[0]
     }
 
     /// The largest angular frequency \[rad/s\] of the pin with these displacements, at most 2.5 % too low and never too high; returns `None`
@@ -238,6 +261,7 @@ impl Operator {
         masses_kg: &[f64],
         freedoms: &[Freedom],
         u: &Field<1>,
+        history: &[f64],
     ) -> Option<f64> {
         let largest = |field: &Field<1>| field.values().fold(0.0, |a: f64, b| a.max(b.abs()));
         let size_m = largest(u);
@@ -246,12 +270,12 @@ impl Operator {
         }
         let mut scratch = self.scratch(layout, 1);
         let mut unmoved = Field::zeros(layout);
-        self.internal_n(u, &mut unmoved, &mut scratch);
+        self.internal_n(u, Past::Kept(history), &mut unmoved, &mut scratch);
         // The displacements of the two states differ by 10⁻⁷ of the largest one, which changes the stiffness by as little. Their forces are
         // known to rounding in proportion to the displacements, so that the difference has eight digits.
         let product = |x: &Field<1>, y: &mut Field<1>| {
             let factor = 1.0e-7 * size_m / largest(x);
-            self.internal_n(&moved(u, factor, x), y, &mut scratch);
+            self.internal_n(&moved(u, factor, x), Past::Kept(history), y, &mut scratch);
             change_over(factor, y, &unmoved);
         };
         Some(lanczos::largest_square(layout, product, masses_kg, freedoms, CHECK_MARGIN).sqrt())
@@ -314,10 +338,16 @@ impl Operator {
     /// If the scratch is that of another operator.
     #[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
     #[inline(always)]
-    fn pass<S: Simd, R: Number>(&self, simd: S, pass: &mut impl Pass<S, R>, scratch: &mut Scratch<R>) {
+    fn pass<S: Simd, R: Number>(
+        &self,
+        simd: S,
+        pass: &mut impl Pass<S, R>,
+        past: &mut Past<'_, R>,
+        scratch: &mut Scratch<R>,
+    ) {
         match (self, &mut scratch.form) {
             (Self::Hyperelastic { elements, .. }, ScratchOf::Nodes(nodes)) => {
-                elements.pass(simd, pass, nodes);
+                elements.pass(simd, pass, past, nodes);
             }
             _ => self.pass_tangent(simd, pass, scratch),
         }
@@ -395,6 +425,11 @@ impl<S: Simd, R: Number, M: Moving<S, R>> Pass<S, R> for Damped<'_, M> {
     #[inline(always)]
     fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]) {
         self.0.take(simd, index, kx);
+    }
+
+    #[inline(always)]
+    fn undamped(&self, simd: S, at: usize) -> Option<[R::Vector<S>; 3]> {
+        self.0.damped(simd, at).map(|_| self.0.u(simd, at))
     }
 }
 

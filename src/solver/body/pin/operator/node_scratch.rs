@@ -22,6 +22,8 @@ pub(super) struct NodeScratch<R: Number> {
     blocks: usize,
     x: Vec<R>,
     y: Vec<R>,
+    /// The displacements without those of damping; empty if nothing asks for them, or if there is no damping.
+    undamped: Vec<R>,
 }
 
 impl<R: Number> NodeScratch<R> {
@@ -33,14 +35,21 @@ impl<R: Number> NodeScratch<R> {
             blocks: blocks_per_line::<R>(layout.nodes_per_line, lanes),
             x: numbers(),
             y: numbers(),
+            undamped: Vec::new(),
         }
     }
 
     /// Displacements and forces.
     #[inline(always)]
     pub(super) fn fields(&mut self) -> [&mut [R]; 2] {
+        self.all_fields().0
+    }
+
+    /// Displacements and forces, and the displacements without those of damping.
+    #[inline(always)]
+    pub(super) fn all_fields(&mut self) -> ([&mut [R]; 2], &[R]) {
         let first = [&self.x, &self.y].map(|field| field.as_ptr().align_offset(ALIGNMENT));
-        [&mut self.x[first[0]..], &mut self.y[first[1]..]]
+        ([&mut self.x[first[0]..], &mut self.y[first[1]..]], &self.undamped)
     }
 
     /// Sets all forces to zero.
@@ -73,13 +82,23 @@ impl<R: Number> NodeScratch<R> {
                 let input = pass.input(simd, line * self.blocks + along);
                 let nodes = self.in_block(line, along);
                 let [x, _] = self.fields();
-                for c in 0..3 {
-                    let row: R::Row = input[c].to_array();
-                    for (slot, node) in nodes.clone().enumerate() {
-                        x[(3 * node + c) * lanes..][..lanes]
-                            .copy_from_slice(&row.as_ref()[slot * lanes..][..lanes]);
-                    }
-                }
+                put::<S, R>(x, lanes, nodes, &input);
+            }
+        }
+    }
+
+    /// Reads the displacements of a pass without those of damping, if there is damping.
+    #[inline(always)]
+    pub(super) fn read_undamped<S: Simd>(&mut self, simd: S, pass: &impl Pass<S, R>) {
+        for line in 0..self.layout.lines() {
+            for along in 0..self.blocks {
+                let Some(undamped) = pass.undamped(simd, line * self.blocks + along) else {
+                    self.undamped.clear();
+                    return;
+                };
+                self.undamped.resize(3 * self.lanes * self.layout.nodes, R::default());
+                let nodes = self.in_block(line, along);
+                put::<S, R>(&mut self.undamped, self.lanes, nodes, &undamped);
             }
         }
     }
@@ -105,6 +124,17 @@ impl<R: Number> NodeScratch<R> {
                 }
             }
             pass.output(simd, index, load_all::<R, S>(simd, &rows));
+        }
+    }
+}
+
+/// Puts the numbers of a block to its nodes.
+#[inline(always)]
+fn put<S: Simd, R: Number>(x: &mut [R], lanes: usize, nodes: Range<usize>, block: &[R::Vector<S>; 3]) {
+    for c in 0..3 {
+        let row: R::Row = block[c].to_array();
+        for (slot, node) in nodes.clone().enumerate() {
+            x[(3 * node + c) * lanes..][..lanes].copy_from_slice(&row.as_ref()[slot * lanes..][..lanes]);
         }
     }
 }

@@ -3,7 +3,7 @@ use crate::solver::body::hexahedron::stiffness;
 use crate::solver::body::pin::{BlockMesh, GeneralMesh, MeshParts, Tilt};
 use crate::solver::field::Field;
 use crate::solver::material::Material;
-use crate::spec::Element;
+use crate::spec::{Element, Plasticity};
 use fearless_simd::Level;
 
 const MATERIAL: Material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
@@ -24,10 +24,10 @@ fn hyperelastic_forms_of(mesh: &BlockMesh) -> Vec<Operator> {
     let general = GeneralMesh::new(&parts, Tilt::default()).unwrap();
     assert_eq!(general.layout().nodes, mesh.node_count());
     let of = |law| Operator::Hyperelastic {
-        elements: HyperelasticOperator::new(&general, &[MATERIAL], law).unwrap(),
+        elements: HyperelasticOperator::new(&general, &[MATERIAL], law, &[]).unwrap(),
         tangent: AssembledOperator::of_block(mesh, &stiffness(&MATERIAL, mesh.element_size_m())),
     };
-    [Hyperelasticity::NeoHookean, Hyperelasticity::StVenantKirchhoff].map(of).into()
+    [MaterialLaw::NeoHookean, MaterialLaw::StVenantKirchhoff].map(of).into()
 }
 
 /// A deterministic pseudo-random field.
@@ -44,7 +44,8 @@ fn values(n: usize, seed: u64) -> Vec<f64> {
 fn product<const L: usize, R: Number>(mesh: &BlockMesh, operator: &Operator, x: &[f64]) -> FieldOf<L, R> {
     let mut y = FieldOf::zeros(mesh.layout());
     let x = FieldOf::from_values(mesh.layout(), x);
-    operator.internal_n(&x, &mut y, &mut operator.scratch(mesh.layout(), L));
+    let history = vec![R::default(); L * operator.history_len()];
+    operator.internal_n(&x, Past::Kept(&history), &mut y, &mut operator.scratch(mesh.layout(), L));
     y
 }
 
@@ -110,7 +111,7 @@ fn vector_widths_agree_in<R: Number>() {
             let mut forms = vec![Default::default(); x.blocks_per_line()];
             let mut product = Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms };
             let mut scratch = operator.scratch(mesh.layout(), L);
-            dispatch!(level, simd => operator.pass(simd, &mut product, &mut scratch));
+            dispatch!(level, simd => operator.pass(simd, &mut product, &mut Past::Kept(&[]), &mut scratch));
             y.values().map(f64::to_bits).collect::<Vec<_>>()
         };
         let best = at(Level::new());
@@ -186,5 +187,75 @@ fn copied_scratch_is_as_good_as_new() {
             })
             .collect();
         assert_eq!(copies.len(), 50);
+    }
+}
+
+/// Protects: elements that yield have the same forces and the same past in any lane, beside any other lanes, on every vector width. Some lanes
+/// yield in the first step, some in the second one, and some not at all.
+#[test]
+fn yielding_lanes_do_not_see_each_other() {
+    fn followed<const L: usize>(
+        level: Level,
+        mesh: &BlockMesh,
+        operator: &Operator,
+        x: [&[f64]; 2],
+    ) -> [Vec<f64>; 2] {
+        let mut history = vec![0.0; L * operator.history_len()];
+        let mut forces = Vec::new();
+        let mut scratch = operator.scratch(mesh.layout(), L);
+        for x in x {
+            let x = FieldOf::<L, f64>::from_values(mesh.layout(), x);
+            let mut y = FieldOf::<L, f64>::zeros(mesh.layout());
+            let mut forms = vec![Default::default(); x.blocks_per_line()];
+            let mut product = Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms };
+            let mut past = Past::Followed { history: &mut history, time_step_s: 1.0e-6 };
+            dispatch!(level, simd => operator.pass(simd, &mut product, &mut past, &mut scratch));
+            forces.extend(y.values());
+        }
+        [forces, history]
+    }
+    fn compare<const L: usize>(mesh: &BlockMesh, operator: &Operator) {
+        let n = 3 * mesh.node_count();
+        // Strains of some tenths, and of 10⁻³, 10⁻⁵ and less of that.
+        let of_lane = |lane: usize, step: u64| -> Vec<f64> {
+            let size_m = if step == 0 && lane % 2 == 1 { 1.0e-9 } else { 3.0e-4 };
+            let size_m = if lane % 4 == 3 { 1.0e-8 } else { size_m };
+            values(n, 10 * step + lane as u64).into_iter().map(|x| size_m * x).collect()
+        };
+        let all = |step: u64| {
+            let lanes: Vec<_> = (0..L).map(|lane| of_lane(lane, step)).collect();
+            (0..n).flat_map(|i| lanes.iter().map(move |lane| lane[i]).collect::<Vec<_>>()).collect::<Vec<_>>()
+        };
+        let (first, second) = (all(0), all(1));
+        let together = followed::<L>(Level::new(), mesh, operator, [&first, &second]);
+        assert_eq!(together, followed::<L>(Level::baseline(), mesh, operator, [&first, &second]));
+        for lane in 0..L {
+            let (first, second) = (of_lane(lane, 0), of_lane(lane, 1));
+            let alone = followed::<1>(Level::new(), mesh, operator, [&first, &second]);
+            for (alone, together) in alone.iter().zip(&together) {
+                let own: Vec<f64> = together.iter().skip(lane).step_by(L).copied().collect();
+                assert!(alone.iter().all(|x| x.is_finite()));
+                assert_eq!(*alone, own, "{lane} of {L}");
+            }
+            let yields = alone[1].iter().any(|x| *x != 0.0);
+            assert_eq!(yields, lane % 4 != 3, "lane {lane}");
+        }
+    }
+    for elements in [[4, 5, 3], [7, 3, 2]] {
+        let mesh = BlockMesh::new([0.012, 0.015, 0.010], elements);
+        for (element, kinematic_modulus_pa) in [(Element::Full, None), (Element::Selective, Some(1.0e7))] {
+            let parts = MeshParts { element, ..MeshParts::of_block(&mesh) };
+            let general = GeneralMesh::new(&parts, Tilt::default()).unwrap();
+            let plasticity =
+                Plasticity { yield_stress_pa: 1.0e6, kinematic_modulus_pa, ..Plasticity::default() };
+            let law = MaterialLaw::J2;
+            let operator = Operator::Hyperelastic {
+                elements: HyperelasticOperator::new(&general, &[MATERIAL], law, &[Some(plasticity)]).unwrap(),
+                tangent: AssembledOperator::of_block(&mesh, &stiffness(&MATERIAL, mesh.element_size_m())),
+            };
+            compare::<2>(&mesh, &operator);
+            compare::<4>(&mesh, &operator);
+            compare::<8>(&mesh, &operator);
+        }
     }
 }
