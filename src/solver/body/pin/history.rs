@@ -4,7 +4,7 @@ use super::operator::Operator;
 use crate::solver::lane::{LaneState, next};
 use crate::solver::number::Number;
 
-/// The numbers that elements keep, in the order element → number → lane. Linear forms keep none.
+/// The numbers that elements keep, in the order number → lane. Linear forms keep none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct History<const L: usize, R: Number>(Vec<R>);
 

@@ -2,7 +2,7 @@
 
 use crate::solver::number::Number;
 
-/// The history of all elements, in the order element → number → lane.
+/// The history of all elements, in the order number → lane.
 #[derive(Debug)]
 pub enum Past<'a, R: Number> {
     /// It stays: the forces are those of an elastic change.

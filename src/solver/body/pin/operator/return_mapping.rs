@@ -34,7 +34,7 @@ pub(super) struct YieldLaw {
 
 /// Error of the stress over the yield stress at which the search for Δγ ends, and its most steps. A step halves the interval at least every
 /// third time.
-const TOLERANCE: f64 = 8.0 * f64::EPSILON;
+const TOLERANCE: f64 = 1.0e-13;
 const MAX_STEPS: usize = 200;
 
 impl YieldLaw {
