@@ -43,6 +43,7 @@ BENCHMARKS = {
     "B23": "General meshes: cylinders, tilt, regions",
     "B24": "Elements that bend: Cook's membrane",
     "B35": "Large strains: cantilever",
+    "B36": "Plasticity: tube under pressure, Taylor's bar",
     "Flutter": "Linear flutter of the pin",
     "R1": "Ring: eigenfrequencies",
     "R2": "Ring: static deflection",

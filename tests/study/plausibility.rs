@@ -59,6 +59,21 @@ fn large_strains_are_named() {
     assert_contains(&soft, &["1:43: scene.pin.young_modulus_pa = 1e7: the mean strain", "1.67 %"]);
 }
 
+/// Protects: a load under which the whole pin flows is named, and a yield stress that no metal has.
+#[test]
+fn yielding_pins_are_plausible() {
+    let of = |force_n: u32, yield_stress_pa: &str| {
+        warnings(&format!(
+            r#"{{ "scene": {{ "load": {{ "force_n": {force_n} }}, "pin": {{ "strains": "finite", "material": "j2",
+                "young_modulus_pa": 7e10, "plasticity": {{ "yield_stress_pa": {yield_stress_pa} }} }} }} }}"#
+        ))
+    };
+    assert_eq!(of(17_000, "1e8"), []);
+    // 1.8e-4 m² of 1e8 Pa bear 18 kN.
+    assert_contains(&of(36_000, "1e8")[0].to_string(), &["the mean pressure is 2 times the yield stress"]);
+    assert_contains(&of(100, "7e9")[0].to_string(), &["an elastic strain of 10 %", "check the units"]);
+}
+
 /// Protects: values that look like another unit are named with the unit that is expected, one warning for each.
 #[test]
 fn other_units_are_named() {

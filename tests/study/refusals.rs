@@ -537,6 +537,55 @@ fn large_strains_refuse_what_is_linear() {
     }
 }
 
+/// Protects: what yields says when, and a yield stress that nothing uses is refused. A curve of hardening begins at the yield stress and does not fall.
+#[test]
+fn what_yields_says_when() {
+    let pin = |fields: &str| refusal(&format!(r#"{{ "scene": {{ "pin": {{ {fields} }} }} }}"#));
+    let j2 = |plasticity: &str| {
+        pin(&format!(r#""strains": "finite", "material": "j2", "plasticity": {{ {plasticity} }}"#))
+    };
+    let stress = r#""yield_stress_pa": 3e8"#;
+    for (text, expected) in [
+        (
+            pin(r#""strains": "finite", "material": "j2""#),
+            "scene.pin.plasticity = absent: expected an object with yield_stress_pa",
+        ),
+        (
+            pin(&format!(r#""material": "j2", "plasticity": {{ {stress} }}"#)),
+            "scene.pin.strains = small: expected finite",
+        ),
+        (
+            pin(&format!(r#""strains": "finite", "plasticity": {{ {stress} }}"#)),
+            "expected absent, or scene.pin.material = j2",
+        ),
+        (j2(""), "missing field `yield_stress_pa`"),
+        (j2(r#""yield_stress_pa": 0"#), "scene.pin.plasticity.yield_stress_pa = 0: expected a stress > 0 Pa"),
+        (
+            j2(&format!(r#"{stress}, "hardening_modulus_pa": -1"#)),
+            "hardening_modulus_pa = -1: expected a modulus >= 0 Pa",
+        ),
+        (
+            j2(&format!(r#"{stress}, "saturation_stress_pa": 1e8"#)),
+            "saturation_strain = absent: expected a number",
+        ),
+        (j2(&format!(r#"{stress}, "rate_exponent": 4"#)), "rate_reference_per_s = absent: expected a number"),
+        (
+            j2(&format!(r#"{stress}, "hardening_curve": [[0, 2e8], [0.1, 4e8]]"#)),
+            "hardening_curve[0] = [0, 200000000]: expected [0, 300000000]",
+        ),
+        (
+            j2(&format!(r#"{stress}, "hardening_curve": [[0, 3e8], [0.1, 2e8]]"#)),
+            "hardening_curve[1] = [0.1, 200000000]: expected a larger plastic strain",
+        ),
+        (
+            j2(&format!(r#"{stress}, "hardening_modulus_pa": 1, "hardening_curve": [[0, 3e8]]"#)),
+            "hardening_modulus_pa = 1: expected absent",
+        ),
+    ] {
+        assert_contains(&text, &[expected]);
+    }
+}
+
 /// Protects: an accuracy is a share of μ*, and is asked for only where there are meshes to go through and a steady state.
 #[test]
 fn an_accuracy_needs_meshes_and_a_steady_state() {

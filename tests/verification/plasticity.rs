@@ -13,6 +13,7 @@ use crate::verification::common::{IDLE, definition};
 use crate::verification::evidence::Evidence;
 use crate::verification::shapes::distorted;
 use std::f64::consts::FRAC_PI_2;
+use tribosweep_mechanics::analysis::{Unobserved, solve};
 use tribosweep_mechanics::solver::body::pin::{
     BlockMesh, GeneralMesh, History, MeshParts, Stiffness, Tilt, cylinder,
 };
@@ -23,13 +24,18 @@ use tribosweep_mechanics::solver::material::Material;
 use tribosweep_mechanics::solver::support::Support;
 use tribosweep_mechanics::solver::support::load::LoadShare;
 use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
-use tribosweep_mechanics::spec::{ClampSide, Element, JobSpec, MaterialLaw, Plasticity, Strains};
+use tribosweep_mechanics::spec::{
+    ClampSide, Contact, Element, FrictionLaw, JobSpec, MaterialLaw, Plasticity, Strains,
+};
 
 const ELEMENTS: [Element; 2] = [Element::Full, Element::Selective];
 const METAL: Material = Material { young_modulus_pa: 7.0e10, poisson_ratio: 0.33, density_kg_m3: 2700.0 };
 const YIELD_PA: f64 = 3.0e8;
 
 type Matrix = [[f64; 3]; 3];
+
+/// Yield stress \[Pa\] over the plastic strain.
+type Yield = fn(f64) -> f64;
 
 fn perfect() -> Plasticity {
     Plasticity { yield_stress_pa: YIELD_PA, ..Plasticity::default() }
@@ -140,7 +146,6 @@ fn tension_has_the_yield_stress() {
     let curve = vec![[0.0, YIELD_PA], [0.05, 4.0e8], [0.2, 4.5e8]];
     let tabulated = Plasticity { hardening_curve: curve, ..perfect() };
     let rate = Plasticity { rate_reference_per_s: Some(100.0), rate_exponent: Some(4.0), ..perfect() };
-    type Yield = fn(f64) -> f64;
     let cases: [(Plasticity, Yield); 4] = [
         (perfect(), |_| YIELD_PA),
         (saturating, |strain| YIELD_PA + 2.0e8 * strain + 1.5e8 * (1.0 - (-strain / 0.1).exp())),
@@ -416,11 +421,7 @@ fn a_tube_yields_from_inside() {
     let yielded_m: f64 = 0.015;
     let pressure_pa = k * (1.0 - (yielded_m / 0.02).powi(2) + 2.0 * (yielded_m / 0.01).ln());
     let exact = k * yielded_m.powi(2) / (2.0 * material.shear_modulus_pa() * 0.02);
-    let mut evidence = Evidence::new(
-        "B36",
-        "tube under pressure, displacement outside \\[m\\]".replace('\\', ""),
-        "Hill 1950",
-    );
+    let mut evidence = Evidence::new("B36", "tube under pressure, displacement outside [m]", "Hill 1950");
     for across in [6, 12] {
         let found = outer_m(across, Element::Selective, pressure_pa, material);
         println!("{across}: {found:e} of {exact:e}, {}", found / exact - 1.0);
@@ -542,4 +543,51 @@ fn energies_close_where_it_yields() {
         assert!(residuals[0] < 1.0e-4, "{residuals:?}");
         assert!(residuals[1] < 0.35 * residuals[0], "{residuals:?}");
     }
+}
+
+/// Protects: hostile scenes end as a result, or with what is wrong: loads far beyond the yield stress, a yield stress far below every stress, and a
+/// friction law with a history.
+#[test]
+fn hostile_scenes_end() {
+    let mut ended = [0; 2];
+    for (force_n, yield_stress_pa, law) in [
+        (1.0e5, 1.0e8, FrictionLaw::Coulomb),
+        (100.0, 1.0e3, FrictionLaw::Coulomb),
+        (2.0e4, 1.0e8, FrictionLaw::PrakashClifton),
+        (1.0e4, 1.0e8, FrictionLaw::StaticKinetic),
+        (1.0e-6, 1.0e8, FrictionLaw::Exponential),
+    ] {
+        let mut spec = aluminium_pin();
+        spec.scene.pin.plasticity = Some(Plasticity {
+            yield_stress_pa,
+            kinematic_modulus_pa: Some(0.01 * yield_stress_pa),
+            ..Plasticity::default()
+        });
+        spec.scene.load.force_n = force_n;
+        spec.scene.contact = Contact {
+            law,
+            mu_static: Some(0.6),
+            speed_m_s: Some(0.1),
+            length_m: Some(1.0e-6),
+            ..Contact::default()
+        };
+        spec.detection.decay_observation_s = 4.0e-4;
+        spec.run.limit_s = 8.0e-4;
+        match solve(&spec, &mut Unobserved) {
+            Ok(record) => {
+                ended[0] += 1;
+                let flow = record.plastic.unwrap();
+                assert!(flow.work_j >= 0.0 && flow.strain_max >= 0.0, "{flow:?}");
+                assert_eq!(flow.work_j > 0.0, flow.strain_max > 0.0, "{flow:?}");
+                assert!(record.energy_residual < 1.0e-3, "{force_n} N: {}", record.energy_residual);
+            }
+            Err(error) => {
+                ended[1] += 1;
+                let error = error.to_string();
+                let is_named = ["is inverted at t = ", "numerics.safety_factor = ", "stability limit"];
+                assert!(is_named.iter().any(|words| error.contains(words)), "{force_n} N: {error}");
+            }
+        }
+    }
+    assert!(ended[0] >= 2 && ended[1] >= 1, "{ended:?}");
 }
