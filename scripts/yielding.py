@@ -18,6 +18,9 @@ LAWS = {
     "isotropic": {"hardening_modulus_pa": HARDENING_PA},
     "kinematic": {"kinematic_modulus_pa": HARDENING_PA},
 }
+# The laws on each mesh, by its elements in x: the finer one takes longer.
+OF_MESH = {8: ["none", "isotropic", "kinematic"], 12: ["none", "kinematic"]}
+LONGER_LAWS = ["none", "kinematic"]
 # The time limits of the longer runs, which do not stop when they are periodic.
 LONGER_S = [0.002, 0.006]
 
@@ -75,35 +78,33 @@ def cells(row):
 
 
 def page():
-    results = {
-        (law, elements[0]): rows_of(law, elements, law) for elements in MESHES for law in LAWS
-    }
+    results = {(law, elements[0]): rows_of(law, elements, law) for elements in MESHES for law in OF_MESH[elements[0]]}
     linear = {elements[0]: rows_of("linear", elements, None) for elements in MESHES}
     longer = {
         law: [
             rows_of(f"{law}-{limit_s:g}".replace(".", "p"), MESHES[0], law, limit_s=limit_s, stop_early=False)
             for limit_s in LONGER_S
         ]
-        for law in LAWS
+        for law in LONGER_LAWS
     }
     pressure = {load: load / (SIZE_M[0] * SIZE_M[1] * YIELD_PA) for load in LOADS}
 
     def table(elements):
-        head = ["load (N)", "mean pressure / σ₀", "hardening", "state", "plastic strain", "plastic work / friction", "μ*", "kHz"]
+        head = ["load (N)", "mean pressure / σ₀", "hardening", "state", "plastic strain", "share of plastic work", "μ*", "kHz"]
         lines = [
             [load, percent(pressure[load], 1), law, *cells(results[law, elements[0]][load])]
             for load in LOADS
-            for law in LAWS
+            for law in OF_MESH[elements[0]]
         ]
         return runs.table(head, lines)
 
     def long_table():
         head = ["load (N)", "hardening"]
         for limit_s in LONGER_S:
-            head += [f"plastic strain, {1000 * limit_s:g} ms", "plastic work / friction"]
+            head += [f"plastic strain, {1000 * limit_s:g} ms", "share of plastic work"]
         lines = []
         for load in LOADS:
-            for law in LAWS:
+            for law in LONGER_LAWS:
                 rows = [rows[load] for rows in longer[law]]
                 if all(row["status"] != "failed" and row["plastic_strain_max"] > 0 for row in rows):
                     parts = [[percent(row["plastic_strain_max"]), percent(row["plastic_share"], 3)] for row in rows]
@@ -111,7 +112,7 @@ def page():
         return runs.table(head, lines)
 
     fine = MESHES[1][0]
-    found = [(load, law, results[law, fine][load]) for load in LOADS for law in LAWS]
+    found = [(load, law, results[law, fine][load]) for load in LOADS for law in OF_MESH[fine]]
     of_linear = linear[fine][LOADS[0]]
     settled = [entry for entry in found if entry[2]["status"] == "periodic"]
 
@@ -123,7 +124,7 @@ def page():
     quiet = [change(row, "mu_star") for load, law, row in settled if row["plastic_state"] != "yielding"]
     ends = [(load, law) for load, law, row in found if row["status"] != "periodic"]
     claim = (
-        f"From {min(down)} N on the edges yield and shake down: nothing yields in the limit cycle, and μ\\* and the frequency are within "
+        f"From {min(down)} N on the edges yield and shake down: next to nothing yields in the limit cycle, and μ\\* and the frequency are within "
         f"{percent(max(abs(x) for x in quiet), 2)} of those without yielding."
         if down
         else "No load shakes down."
@@ -140,7 +141,7 @@ def page():
     meshes = [" × ".join(map(str, mesh)) for mesh in MESHES]
     return f"""# An aluminium pin that yields
 
-Written by `scripts/yielding.py`; do not edit. It runs {len(LOADS) * ((len(LAWS) + 1) * len(MESHES) + len(LAWS) * len(LONGER_S))} jobs.
+Written by `scripts/yielding.py`; do not edit. It runs {len(LOADS) * (len(MESHES) + sum(map(len, OF_MESH.values())) + len(LONGER_LAWS) * len(LONGER_S))} jobs.
 
 **{claim}{without}**
 
@@ -154,8 +155,7 @@ The pin is a block of 12 × 15 × 10 mm of soft aluminium (E = 70 GPa, ν = 0.33
 {meshes[0]} elements:
 
 {table(MESHES[0])}
-`~` is a run that is not periodic, and the numbers are averages over its last part. *Plastic strain* is the largest one of the pin at the end of the run. *Plastic work / friction* is the plastic work within the averaging window over the work of friction there; a state that `yields` has some, and
-one that is `shaken down` has none.
+`~` is a run that is not periodic, and the numbers are averages over its last part. *Plastic strain* is the largest one of the pin at the end of the run. The *share of plastic work* is the plastic work within the averaging window over the sum of it and the work of friction there. A state is `shaken down` if that is at most 0.01 %.
 
 ## Does it go on?
 

@@ -21,8 +21,10 @@ pub struct Cycle {
     pub amplitude_n: f64,
     /// Largest and smallest difference \[N\] of that force from the section.
     pub extremes_n: [f64; 2],
-    /// Plastic work and work of friction \[J\] within it.
-    pub works_j: [f64; 2],
+    /// Plastic work \[J\] within it, between the last audits before its ends.
+    pub plastic_j: f64,
+    /// Work of friction \[J\] within it, likewise.
+    pub friction_j: f64,
 }
 
 impl Cycle {
@@ -161,7 +163,8 @@ impl CycleCutter {
                 energies: at_start,
                 amplitude_n: self.remembered,
                 extremes_n: [self.highest, self.lowest],
-                works_j: [energies.plastic_j - at_start.plastic_j, energies.friction_j - at_start.friction_j],
+                plastic_j: energies.plastic_j - at_start.plastic_j,
+                friction_j: energies.friction_j - at_start.friction_j,
             });
             self.open = Some((time_s, *energies));
             self.figures = Figures::EMPTY;

@@ -7,6 +7,7 @@ use super::figures::Figures;
 use super::lines;
 use super::nested::CoarseStart;
 use super::noted::Noted;
+use super::plastic::{self, NEGLIGIBLE_SHARE};
 use super::program::ProgramWindows;
 use super::record::{
     ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, PlasticFlow, Regime,
@@ -164,7 +165,8 @@ impl LaneAnalysis {
         // The means hardly change from step to step.
         let is_due = decay && (!self.oscillations_decay || self.trailing.begins_block());
         if is_due && !self.decays {
-            self.decays = self.settling().is_done(self.spec.detection.drift_tolerance);
+            self.decays = self.settling().is_done(self.spec.detection.drift_tolerance)
+                && self.trailing.flow_share(energies) <= NEGLIGIBLE_SHARE;
         }
         self.decays &= decay;
         self.oscillations_decay = decay;
@@ -260,7 +262,7 @@ impl LaneAnalysis {
             mu_reduction_stick: figures.stick_reduction(),
             mu_reduction_slip: figures.slip_reduction(),
             growth_rate_per_s: self.monitor.as_ref().and_then(DecayMonitor::growth_rate_per_s),
-            obstacle: (outcome == Outcome::NotPeriodic).then(|| self.obstacle()),
+            obstacle: (outcome == Outcome::NotPeriodic).then(|| self.obstacle(energies)),
             stability: self.stability.clone(),
             accuracy_reached: None,
             start: self.start.clone(),
@@ -270,7 +272,7 @@ impl LaneAnalysis {
             plastic: plastic.map(|[work_j, strain_max]| PlasticFlow {
                 strain_max,
                 work_j,
-                share: plastic_share(&window.energies, energies),
+                share: plastic::share(&window.energies, energies),
             }),
             energy: totals(energies),
             nodes: observed_nodes(figures),
@@ -293,8 +295,12 @@ impl LaneAnalysis {
     }
 
     /// Why the end of the run counts neither as periodic nor as decayed.
-    fn obstacle(&self) -> Obstacle {
+    fn obstacle(&self, energies: &Energies) -> Obstacle {
         if self.oscillations_decay {
+            let share = self.trailing.flow_share(energies);
+            if share > NEGLIGIBLE_SHARE {
+                return Obstacle::Flow { share };
+            }
             let Settling { still_to_come, imbalance, .. } = self.settling();
             return Obstacle::Creep { still_to_come, imbalance };
         }
@@ -396,12 +402,6 @@ fn energy_identity(start: &Energies, end: &Energies) -> f64 {
 fn contact_loss_share(start: &Energies, end: &Energies) -> f64 {
     let drive_j = end.drive_work_j - start.drive_work_j;
     if drive_j == 0.0 { 0.0 } else { (end.contact_loss_j - start.contact_loss_j) / drive_j }
-}
-
-/// Plastic work / work of friction, over the window.
-fn plastic_share(start: &Energies, end: &Energies) -> f64 {
-    let work_j = end.plastic_j - start.plastic_j;
-    if work_j == 0.0 { 0.0 } else { work_j / (end.friction_j - start.friction_j) }
 }
 
 /// The mesh of an elastic disk, and its contact solves in so many steps.

@@ -43,6 +43,7 @@ mod mode;
 pub mod nested;
 mod noted;
 mod outcome;
+mod plastic;
 pub mod program;
 pub mod quantity;
 pub mod record;

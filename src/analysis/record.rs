@@ -4,6 +4,7 @@ use super::above_band::AboveBand;
 use super::mode::ComplexMode;
 use super::nested::CoarseStart;
 pub use super::outcome::{Outcome, Regime};
+pub use super::plastic::PlasticFlow;
 use super::program::ProgramWindow;
 use super::steady::Obstacle;
 use serde::{Deserialize, Serialize};
@@ -51,28 +52,6 @@ pub struct HolderMotion {
     pub peak_to_peak_m: f64,
     /// Root mean square of the acceleration \[m/s²\].
     pub acceleration_rms_m_s2: f64,
-}
-
-/// The plastic flow of a pin that may yield.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct PlasticFlow {
-    /// Largest plastic strain at the end of the run.
-    pub strain_max: f64,
-    /// Plastic work \[J\] since the start.
-    pub work_j: f64,
-    /// Plastic work within the averaging window over the work of friction there.
-    pub share: f64,
-}
-
-impl PlasticFlow {
-    /// Its state in words: `elastic` if nothing has yielded, `shaken_down` if nothing yields in the window, and `yielding`.
-    pub fn state(&self) -> &'static str {
-        match (self.work_j != 0.0, self.share != 0.0) {
-            (false, _) => "elastic",
-            (true, false) => "shaken_down",
-            (true, true) => "yielding",
-        }
-    }
 }
 
 /// The mesh and the contact solves of an elastic disk.

@@ -4,8 +4,10 @@
 //! cycle). Therefore groups of m = 1, 2, 3, 4 crossings are tried. The smallest m whose groups repeat gives
 //! the limit cycle. Groups repeat if, over the last `cycles` of them, the range of every figure is within
 //! `tolerance`, and its means over the two halves differ by at most `drift_tolerance`. The amplitude of N is
-//! one of the figures: a slowly growing or decaying oscillation is not periodic, however small it is. Another one is the plastic work of a
-//! cycle over the work of friction: where a material yields, it must stand still, at zero (shakedown) or not.
+//! one of the figures: a slowly growing or decaying oscillation is not periodic, however small it is.
+//!
+//! Where a material yields, the share of the plastic work must stand still as well ([`plastic`]): negligible (shakedown), or the same in both halves
+//! within `tolerance` of itself.
 //!
 //! A rate of growth or decay below `drift_tolerance` over half of the window is not seen: 1.5 1/s in the reference scene.
 //!
@@ -20,6 +22,7 @@
 
 use super::cycles::Cycle;
 use super::figures::Figures;
+use super::plastic::{self, shares_of_halves};
 use crate::spec::{Detection, SlowTimes};
 use serde::{Deserialize, Serialize};
 
@@ -61,7 +64,9 @@ fn find_groups(
 ) -> Option<SteadyState> {
     let state = |window: &[Cycle]| {
         let groups: Vec<[f64; FIGURES]> = window.chunks_exact(m).map(|group| kind.figures(group)).collect();
-        let is_steady = repeats(&groups, detection, kind) && is_balanced(window, detection);
+        let is_steady = repeats(&groups, detection, kind)
+            && is_balanced(window, detection)
+            && flow_stands_still(window, detection);
         is_steady.then_some(SteadyState { crossings_per_cycle: m, window_crossings: window.len() })
     };
     let window = last_groups(cycles, m, detection.cycles)?;
@@ -77,6 +82,11 @@ fn find_groups(
 /// Whether clamp and contact carry the same mean force.
 fn is_balanced(window: &[Cycle], detection: &Detection) -> bool {
     imbalance(window).abs() <= detection.drift_tolerance
+}
+
+/// Whether the material yields as much in both halves of a window.
+fn flow_stands_still(window: &[Cycle], detection: &Detection) -> bool {
+    plastic::stands_still(shares_of_halves(window), detection.tolerance)
 }
 
 /// [`Figures::imbalance`] of a window.
@@ -114,6 +124,11 @@ pub enum Obstacle {
         /// The time \[s\] over which the cycles must repeat; none if nothing in the scene is slow.
         covered_s: Option<f64>,
     },
+    /// The last cycles repeat, or all oscillations decay, but the material goes on yielding.
+    Flow {
+        /// Plastic work over the sum of it and the work of friction.
+        share: f64,
+    },
     /// All oscillations decay, but the mean friction has not come to its end.
     Creep {
         /// What the mean over an observation will still change.
@@ -133,6 +148,10 @@ pub fn obstacle(cycles: &[Cycle], detection: &Detection, slow: Option<SlowTimes>
             return Some((f64::INFINITY, Obstacle::SlipOnly));
         }
         if repeats(&groups, detection, Kind::Normal) {
+            if !flow_stands_still(window, detection) {
+                let [_, share] = shares_of_halves(window);
+                return Some((0.0, Obstacle::Flow { share }));
+            }
             let covered_s = slow.map(|slow| slow.swing_s + slow.relaxation_s);
             return Some((0.0, Obstacle::Swing { imbalance: imbalance(window), covered_s }));
         }
@@ -148,7 +167,7 @@ pub fn obstacle(cycles: &[Cycle], detection: &Detection, slow: Option<SlowTimes>
 }
 
 /// Number of figures compared.
-const FIGURES: usize = 9;
+const FIGURES: usize = 8;
 /// Names of the compared figures.
 const NAMES: [&str; FIGURES] = [
     "mu_star",
@@ -156,13 +175,12 @@ const NAMES: [&str; FIGURES] = [
     "stick_share",
     "slip_share",
     "separated_share",
-    "plastic work over that of friction",
     "period",
     "sigma_n_max",
     "amplitude of N",
 ];
 /// Figures from this index on are compared relative to their mean.
-const FIRST_RELATIVE: usize = 6;
+const FIRST_RELATIVE: usize = 5;
 
 fn figures_of(group: &[Cycle]) -> [f64; FIGURES] {
     let figures = Figures::merged(group.iter().map(|cycle| &cycle.figures));
@@ -173,17 +191,10 @@ fn figures_of(group: &[Cycle]) -> [f64; FIGURES] {
         stick,
         slip,
         separated,
-        plastic_share(group),
         group[group.len() - 1].end_s - group[0].start_s,
         figures.sigma_n_max_pa,
         group.iter().map(|cycle| cycle.amplitude_n).fold(0.0, f64::max),
     ]
-}
-
-/// The plastic work of a group of cycles over the work of friction; 0 if nothing yields.
-fn plastic_share(group: &[Cycle]) -> f64 {
-    let sum = |i: usize| group.iter().map(|cycle| cycle.works_j[i]).sum::<f64>();
-    if sum(0) == 0.0 { 0.0 } else { sum(0) / sum(1) }
 }
 
 /// The figures of a group of cycles of the holder.
@@ -200,7 +211,6 @@ fn figures_of_swing(group: &[Cycle]) -> [f64; FIGURES] {
         stick,
         slip,
         separated,
-        plastic_share(group),
         group[group.len() - 1].end_s - group[0].start_s,
         1.0,
         group.iter().map(of_both).sum::<f64>() / group.len() as f64,

@@ -1,6 +1,7 @@
 //! The windows of a run over which figures are averaged.
 
 use super::figures::Figures;
+use super::plastic;
 use super::sample::Sample;
 use crate::solver::energy::Energies;
 use serde::{Deserialize, Serialize};
@@ -101,6 +102,11 @@ impl Trailing {
             oscillation: clamp.1.max(contact.1),
             steady_mu,
         }
+    }
+
+    /// The share of the plastic work in what plastic flow and friction dissipate, from the first block on.
+    pub fn flow_share(&self, now: &Energies) -> f64 {
+        self.blocks.front().map_or(0.0, |first| plastic::share(&first.energies, now))
     }
 
     /// The window of all blocks.

@@ -199,7 +199,8 @@ pub(crate) async fn write(
             log(format_args!("  {line}"));
         }
     }
-    if let Some(sentence) = accuracy::not_reached(&content.rows) {
+    let doubts = [accuracy::not_reached(&content.rows), accuracy::still_yielding(&content.rows)];
+    for sentence in doubts.into_iter().flatten() {
         log(format_args!("warning: {sentence}"));
     }
     log(format_args!("report written to {}", folder.display()));

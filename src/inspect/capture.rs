@@ -6,7 +6,6 @@ use super::survey::TimeWindows;
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment};
 use crate::solver::Model;
-use crate::solver::body::pin::History;
 use crate::solver::energy::Energies;
 use crate::spec::JobSpec;
 use std::collections::VecDeque;
@@ -74,8 +73,10 @@ pub struct Frame {
     pub u_m: Vec<f64>,
     /// Velocities [m/s] over the step, in the same order.
     pub velocity_m_s: Vec<f64>,
-    /// What the elements keep of their past.
-    pub history: History<1, f64>,
+    /// Stress \[Pa\] at the nodes.
+    pub stress_pa: Vec<[f64; 6]>,
+    /// Plastic strain at the nodes; none if no material yields.
+    pub plastic_strain: Option<Vec<f64>>,
     /// The contact face during the step.
     pub face: Vec<NodeSample>,
 }
@@ -196,11 +197,13 @@ impl JobObserver for Recorder<'_> {
         if self.frame_times_s.pop_if(due).is_some() {
             // A cycle may have fewer steps than frames.
             while self.frame_times_s.pop_if(due).is_some() {}
+            let (pin, u_m, history) = (moment.model.pin(), moment.nodes.u_m(), moment.nodes.history());
             self.frames.push(Frame {
                 time_s,
-                u_m: moment.nodes.u_m(),
+                stress_pa: pin.nodal_stress_pa(&u_m, &history),
+                plastic_strain: pin.nodal_plastic_strain(&history),
+                u_m,
                 velocity_m_s: moment.nodes.velocity_m_s(),
-                history: moment.nodes.history(),
                 face: face_of(moment),
             });
         }

@@ -83,10 +83,9 @@ fn point_data(capture: &Capture, mesh: &PinMesh, frame: &Frame) -> Vec<PointData
     };
     let mut codes: Vec<i8> = frame.face.iter().map(|node| code(node.state)).collect();
     codes.resize(mesh.node_count(), NO_CONTACT_NODE);
-    let stress = capture.model.pin().nodal_stress_pa(&frame.u_m, &frame.history);
+    let stress = &frame.stress_pa;
     let principal: Vec<f64> = stress.iter().flat_map(|at| stress::principal_pa(*at)).collect();
-    let plastic = capture.model.pin().nodal_plastic_strain(&frame.history);
-    let plastic = plastic.map(|strain| numbers("plastic_strain", 1, &[], strain));
+    let plastic = frame.plastic_strain.clone().map(|strain| numbers("plastic_strain", 1, &[], strain));
     let mut all = vec![
         numbers("displacement_m", 3, &[], frame.u_m.clone()),
         numbers("velocity_m_s", 3, &[], frame.velocity_m_s.clone()),
@@ -101,7 +100,7 @@ fn point_data(capture: &Capture, mesh: &PinMesh, frame: &Frame) -> Vec<PointData
         PointData { name: "contact_state", components: &[], values: Values::Codes(codes) },
         numbers("von_mises_pa", 1, &[], stress.iter().map(|at| stress::von_mises_pa(*at)).collect()),
         numbers("principal_stress_pa", 3, &PRINCIPAL, principal),
-        numbers("stress_pa", 6, &stress::COMPONENTS, stress.into_iter().flatten().collect()),
+        numbers("stress_pa", 6, &stress::COMPONENTS, stress.concat()),
     ];
     all.extend(plastic);
     all

@@ -1,7 +1,7 @@
 //! Yielding of a material with large strains.
 
 use super::check::Violations;
-use super::{JobSpec, MaterialLaw, Strains};
+use super::{JobSpec, MOST_POINTS, MaterialLaw, Strains};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Plasticity {
     /// Yield stress σ₀ (Pa) without plastic strain.
-    pub yield_stress_pa: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yield_stress_pa: Option<f64>,
     /// Linear hardening H (Pa). Absent: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hardening_modulus_pa: Option<f64>,
@@ -24,17 +25,19 @@ pub struct Plasticity {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub saturation_strain: Option<f64>,
     /// Points of a curve instead of the other numbers of isotropic hardening: plastic strain and yield stress (Pa), linear between them and
-    /// constant beyond the last one. The first one has the plastic strain 0 and the stress `yield_stress_pa`.
+    /// constant beyond the last one. The first one has the plastic strain 0 and the stress `yield_stress_pa`, so that a study with a curve cannot
+    /// vary that.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hardening_curve: Vec<[f64; 2]>,
-    /// Linear kinematic hardening (Pa): the rise of the stress over the plastic strain in tension by the shift of the yield surface. Absent: 0.
+    /// Kinematic hardening (Pa): the rise of the stress over small plastic strains in tension by the shift of the yield surface. At a plastic
+    /// strain of 0.3 the shift is 1.2 times as large in tension. Absent: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kinematic_modulus_pa: Option<f64>,
     /// Rate of plastic strain D (1/s) at which the yield stress is twice that of slow yielding (Cowper and Symonds). Absent: it does not depend
     /// on the rate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_reference_per_s: Option<f64>,
-    /// Exponent q of the rate.
+    /// q of the rate, whose power is 1/q.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_exponent: Option<f64>,
 }
@@ -43,7 +46,10 @@ impl Plasticity {
     /// Adds every violated limit to `found`; `at` is the path of the object.
     fn check(&self, at: &str, found: &mut Violations) {
         let field = |name: &str| format!("{at}.{name}");
-        found.within(&field("yield_stress_pa"), self.yield_stress_pa);
+        match self.yield_stress_pa {
+            Some(stress_pa) => _ = found.within(&field("yield_stress_pa"), stress_pa),
+            None => found.add(&field("yield_stress_pa"), "absent", "a stress > 0 Pa"),
+        }
         found.within_if_given(&field("hardening_modulus_pa"), self.hardening_modulus_pa);
         found.within_if_given(&field("saturation_stress_pa"), self.saturation_stress_pa);
         found.within_if_given(&field("saturation_strain"), self.saturation_strain);
@@ -82,8 +88,13 @@ impl Plasticity {
                 );
             }
         }
-        if first_strain != 0.0 || first_pa != self.yield_stress_pa {
-            let right = format!("[0, {}]: the plastic strain 0 and the yield stress", self.yield_stress_pa);
+        if self.hardening_curve.len() > MOST_POINTS {
+            let right = format!("at most {MOST_POINTS} points");
+            found.add(&format!("{at}.hardening_curve"), self.hardening_curve.len(), right);
+        }
+        let yield_stress_pa = self.yield_stress_pa.unwrap_or(f64::NAN);
+        if first_strain != 0.0 || first_pa != yield_stress_pa {
+            let right = format!("[0, {yield_stress_pa}]: the plastic strain 0 and the yield stress");
             found.add(&format!("{at}.hardening_curve[0]"), format!("[{first_strain}, {first_pa}]"), right);
         }
         for (number, points) in self.hardening_curve.windows(2).enumerate() {

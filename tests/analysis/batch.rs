@@ -157,7 +157,7 @@ fn nothing_changes_on_general_meshes(pauses: &[usize]) {
                 // The peaks of the pressure yield, and what has yielded belongs to the state of a job.
                 pin.material = MaterialLaw::J2;
                 pin.plasticity = Some(Plasticity {
-                    yield_stress_pa: 4.0e5,
+                    yield_stress_pa: Some(4.0e5),
                     kinematic_modulus_pa: Some(1.0e7),
                     ..Plasticity::default()
                 });
@@ -172,7 +172,8 @@ fn nothing_changes_on_general_meshes(pauses: &[usize]) {
                 young_modulus_pa: 2.0 * pin.young_modulus_pa,
                 poisson_ratio: 0.2,
                 density_kg_m3: pin.density_kg_m3,
-                plasticity: None,
+                plasticity: (strains == Strains::Finite)
+                    .then(|| Plasticity { yield_stress_pa: Some(3.0e5), ..Plasticity::default() }),
             }];
             job.scene.clamp.side = ClampSide::WholeTop;
             job.run.limit_s = job.run.limit_s.min(0.003);

@@ -31,7 +31,7 @@ pub fn full() -> JobSpec {
     (spec.scene.pin.element, spec.scene.disk.ring.element) = (Element::Incompatible, Element::Incompatible);
     (spec.scene.pin.strains, spec.scene.pin.material) = (Strains::Finite, MaterialLaw::J2);
     let plasticity = Plasticity {
-        yield_stress_pa: 3.0e8,
+        yield_stress_pa: Some(3.0e8),
         hardening_modulus_pa: Some(1.0e8),
         saturation_stress_pa: Some(2.0e8),
         saturation_strain: Some(0.1),

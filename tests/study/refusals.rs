@@ -558,7 +558,7 @@ fn what_yields_says_when() {
             pin(&format!(r#""strains": "finite", "plasticity": {{ {stress} }}"#)),
             "expected absent, or scene.pin.material = j2",
         ),
-        (j2(""), "missing field `yield_stress_pa`"),
+        (j2(""), "scene.pin.plasticity.yield_stress_pa = absent: expected a stress > 0 Pa"),
         (j2(r#""yield_stress_pa": 0"#), "scene.pin.plasticity.yield_stress_pa = 0: expected a stress > 0 Pa"),
         (
             j2(&format!(r#"{stress}, "hardening_modulus_pa": -1"#)),
@@ -584,6 +584,9 @@ fn what_yields_says_when() {
     ] {
         assert_contains(&text, &[expected]);
     }
+    // A parameter may be the first thing that a job says of its plasticity.
+    let only = r#"{ "scene": { "pin": { "strains": "finite", "material": "j2" } }, "grid": { "kinematic_modulus_pa": [1e8] } }"#;
+    assert_contains(&refusal(only), &["scene.pin.plasticity.yield_stress_pa = absent"]);
 }
 
 /// Protects: an accuracy is a share of μ*, and is asked for only where there are meshes to go through and a steady state.

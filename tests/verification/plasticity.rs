@@ -38,7 +38,7 @@ type Matrix = [[f64; 3]; 3];
 type Yield = fn(f64) -> f64;
 
 fn perfect() -> Plasticity {
-    Plasticity { yield_stress_pa: YIELD_PA, ..Plasticity::default() }
+    Plasticity { yield_stress_pa: Some(YIELD_PA), ..Plasticity::default() }
 }
 
 fn stiffness(plasticity: &Plasticity) -> Stiffness {
@@ -145,7 +145,7 @@ fn tension_has_the_yield_stress() {
     };
     let curve = vec![[0.0, YIELD_PA], [0.05, 4.0e8], [0.2, 4.5e8]];
     let tabulated = Plasticity { hardening_curve: curve, ..perfect() };
-    let rate = Plasticity { rate_reference_per_s: Some(100.0), rate_exponent: Some(4.0), ..perfect() };
+    let rate = Plasticity { rate_reference_per_s: Some(1600.0), rate_exponent: Some(4.0), ..perfect() };
     let cases: [(Plasticity, Yield); 4] = [
         (perfect(), |_| YIELD_PA),
         (saturating, |strain| YIELD_PA + 2.0e8 * strain + 1.5e8 * (1.0 - (-strain / 0.1).exp())),
@@ -156,8 +156,8 @@ fn tension_has_the_yield_stress() {
                 (4.0e8 + 5.0e7 * (strain - 0.05) / 0.15).min(4.5e8)
             }
         }),
-        // 0.01 of strain in 10⁻⁴ s is the reference rate.
-        (rate, |_| 2.0 * YIELD_PA),
+        // 0.01 of strain in 10⁻⁴ s is a sixteenth of the reference rate, and the fourth root of that is a half.
+        (rate, |_| 1.5 * YIELD_PA),
     ];
     for (plasticity, yield_pa) in cases {
         for element in ELEMENTS {
@@ -184,7 +184,7 @@ fn tension_has_the_yield_stress() {
 
 /// The shear stresses over τ_y at γ = 6, 0, −6 and 6 times γ_y of a loop from rest, with kinematic or isotropic hardening.
 fn shear_loop(plasticity: &Plasticity, steps: usize) -> [f64; 4] {
-    let yield_shear = plasticity.yield_stress_pa / 3.0_f64.sqrt();
+    let yield_shear = plasticity.yield_stress_pa.unwrap() / 3.0_f64.sqrt();
     let gamma_y = yield_shear / METAL.shear_modulus_pa();
     let mut body = Body::new(Element::Full, plasticity);
     let (mut from, mut found) = (0.0, [0.0; 4]);
@@ -225,7 +225,8 @@ fn shear_goes_round_a_loop() {
             (*exact, from) = (stress, to);
         }
         let differences = [1.0, 0.25].map(|size| {
-            let mut plasticity = Plasticity { yield_stress_pa: size * YIELD_PA, ..Plasticity::default() };
+            let mut plasticity =
+                Plasticity { yield_stress_pa: Some(size * YIELD_PA), ..Plasticity::default() };
             if is_kinematic {
                 plasticity.kinematic_modulus_pa = Some(hardening_pa);
             } else {
@@ -235,8 +236,8 @@ fn shear_goes_round_a_loop() {
             found.iter().zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
         });
         println!("kinematic: {is_kinematic}, {exact:?}, {differences:?}");
-        // γ is 6 · 6.6·10⁻³ and a quarter of that.
-        assert!(differences[0] < 0.1, "{is_kinematic}: {differences:?}");
+        // γ is 6 · 6.6·10⁻³ = 0.04, and a quarter of that.
+        assert!(differences[0] < 0.04, "{is_kinematic}: {differences:?}");
         assert!(differences[1] < 0.35 * differences[0], "{is_kinematic}: {differences:?}");
     }
 }
@@ -385,7 +386,7 @@ fn outer_m(across: usize, element: Element, pressure_pa: f64, material: Material
     });
     // The lowest frequency of the tube is near that of a ring; the damper is about critical.
     let omega = (material.young_modulus_pa / material.density_kg_m3).sqrt() / 0.015;
-    let plasticity = Plasticity { yield_stress_pa: YIELD_PA, ..Plasticity::default() };
+    let plasticity = perfect();
     let model = Model::new(ModelDefinition {
         stiffness: stiffness(&plasticity),
         load: load.collect(),
@@ -425,16 +426,19 @@ fn a_tube_yields_from_inside() {
     for across in [6, 12] {
         let found = outer_m(across, Element::Selective, pressure_pa, material);
         println!("{across}: {found:e} of {exact:e}, {}", found / exact - 1.0);
-        evidence.bounded(format!("{across} elements across"), found, exact, exact, 0.03);
+        evidence.bounded(format!("{across} elements across"), found, exact, exact, 0.015);
     }
-    evidence.judge_bounded("1 − 2ν, and the mesh");
+    evidence.judge_bounded("1 − 2ν = 0.4 %, and the mesh");
 }
 
 /// Length and radius of the foot \[mm\] of Taylor's bar after 80 µs, and the relative residual of its energy.
 fn taylor_bar(across: usize, along: usize) -> [f64; 3] {
     let copper = Material { young_modulus_pa: 1.17e11, poisson_ratio: 0.35, density_kg_m3: 8930.0 };
-    let plasticity =
-        Plasticity { yield_stress_pa: 4.0e8, hardening_modulus_pa: Some(1.0e8), ..Plasticity::default() };
+    let plasticity = Plasticity {
+        yield_stress_pa: Some(4.0e8),
+        hardening_modulus_pa: Some(1.0e8),
+        ..Plasticity::default()
+    };
     let parts =
         MeshParts { element: Element::Selective, ..cylinder([0.0064, 0.0064, 0.0324], across, along) };
     let mesh = GeneralMesh::new(&parts, Tilt::default()).unwrap();
@@ -487,14 +491,14 @@ fn taylors_bar_on(across: usize, along: usize) {
     println!("{length} mm, {foot} mm, balance {residual:e}");
     let mut evidence =
         Evidence::new("B36", "Taylor's bar, length [mm]", "Zhu and Cescotto 1995, Camacho and Ortiz 1997");
-    evidence.bounded(resolution.as_str(), length, 21.5, 21.5, 0.02);
+    evidence.bounded(resolution.as_str(), length, 21.5, 21.5, 0.0093);
     evidence.judge_bounded("the range of the literature");
     let mut evidence = Evidence::new(
         "B36",
         "Taylor's bar, radius of the foot [mm]",
         "Zhu and Cescotto 1995, Camacho and Ortiz 1997",
     );
-    evidence.bounded(resolution.as_str(), foot, 7.08, 7.08, 0.03);
+    evidence.bounded(resolution.as_str(), foot, 7.075, 7.075, 0.0247);
     evidence.judge_bounded("the range of the literature");
     assert!(residual < 1.0e-3, "{residual}");
 }
@@ -519,9 +523,12 @@ fn aluminium_pin() -> JobSpec {
 /// Protects: the balance closes where a material yields, with damping and without. What the scheme leaves is of the second order in the time step.
 #[test]
 fn energies_close_where_it_yields() {
-    for (kinematic_modulus_pa, beta_r_s) in [(None, 0.0), (Some(1.0e9), 2.0e-8)] {
+    let kinematic = Plasticity { kinematic_modulus_pa: Some(1.0e9), ..perfect() };
+    // Flow of some 1000 1/s has a yield stress of 1.5 σ₀.
+    let rate = Plasticity { rate_reference_per_s: Some(1.6e4), rate_exponent: Some(4.0), ..perfect() };
+    for (plasticity, beta_r_s) in [(perfect(), 0.0), (kinematic, 2.0e-8), (rate, 0.0)] {
         let mut spec = aluminium_pin();
-        spec.scene.pin.plasticity = Some(Plasticity { kinematic_modulus_pa, ..perfect() });
+        spec.scene.pin.plasticity = Some(plasticity.clone());
         spec.numerics.beta_r_s = beta_r_s;
         let limit_s = Model::from_scene(&spec.scene, &spec.numerics).unwrap().time_step_limit_s();
         let residuals = [0.4, 0.2].map(|fraction| {
@@ -536,10 +543,10 @@ fn energies_close_where_it_yields() {
                 ledger.after_step(&model, &[drive], &state);
             }
             let energies = ledger.energies(0);
-            assert!(energies.plastic_j > 0.1 * energies.load_work_j, "{energies:?}");
+            assert!(energies.plastic_j > 0.03 * energies.load_work_j, "{energies:?}");
             energies.relative_residual()
         });
-        println!("{kinematic_modulus_pa:?}, {beta_r_s}: {residuals:?}");
+        println!("{plasticity:?}, {beta_r_s}: {residuals:?}");
         assert!(residuals[0] < 1.0e-4, "{residuals:?}");
         assert!(residuals[1] < 0.35 * residuals[0], "{residuals:?}");
     }
@@ -549,17 +556,16 @@ fn energies_close_where_it_yields() {
 /// friction law with a history.
 #[test]
 fn hostile_scenes_end() {
-    let mut ended = [0; 2];
-    for (force_n, yield_stress_pa, law) in [
-        (1.0e5, 1.0e8, FrictionLaw::Coulomb),
-        (100.0, 1.0e3, FrictionLaw::Coulomb),
-        (2.0e4, 1.0e8, FrictionLaw::PrakashClifton),
-        (1.0e4, 1.0e8, FrictionLaw::StaticKinetic),
-        (1.0e-6, 1.0e8, FrictionLaw::Exponential),
+    for (force_n, yield_stress_pa, law, ends) in [
+        (1.0e5, 1.0e8, FrictionLaw::Coulomb, "fails"),
+        (100.0, 1.0e3, FrictionLaw::Coulomb, "fails"),
+        (2.0e4, 1.0e8, FrictionLaw::PrakashClifton, "yielding"),
+        (1.0e4, 1.0e8, FrictionLaw::StaticKinetic, "yielding"),
+        (1.0e-6, 1.0e8, FrictionLaw::Exponential, "elastic"),
     ] {
         let mut spec = aluminium_pin();
         spec.scene.pin.plasticity = Some(Plasticity {
-            yield_stress_pa,
+            yield_stress_pa: Some(yield_stress_pa),
             kinematic_modulus_pa: Some(0.01 * yield_stress_pa),
             ..Plasticity::default()
         });
@@ -575,19 +581,20 @@ fn hostile_scenes_end() {
         spec.run.limit_s = 8.0e-4;
         match solve(&spec, &mut Unobserved) {
             Ok(record) => {
-                ended[0] += 1;
                 let flow = record.plastic.unwrap();
+                println!("{force_n} N: {}, {}", record.outcome.name(), flow.state());
+                assert_eq!(flow.state(), ends, "{force_n} N: {flow:?}");
                 assert!(flow.work_j >= 0.0 && flow.strain_max >= 0.0, "{flow:?}");
                 assert_eq!(flow.work_j > 0.0, flow.strain_max > 0.0, "{flow:?}");
                 assert!(record.energy_residual < 1.0e-3, "{force_n} N: {}", record.energy_residual);
             }
             Err(error) => {
-                ended[1] += 1;
                 let error = error.to_string();
+                println!("{force_n} N: {error}");
+                assert_eq!(ends, "fails", "{force_n} N: {error}");
                 let is_named = ["is inverted at t = ", "numerics.safety_factor = ", "stability limit"];
                 assert!(is_named.iter().any(|words| error.contains(words)), "{force_n} N: {error}");
             }
         }
     }
-    assert!(ended[0] >= 2 && ended[1] >= 1, "{ended:?}");
 }

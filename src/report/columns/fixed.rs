@@ -101,10 +101,10 @@ pub static FURTHER: &[ExportColumn] = &[
     quantity("energy_friction_j", Energies, titled("energy dissipated by friction"), "dissipated by friction since the start", |row| of(row, |record| record.energy.friction_j)),
     quantity("energy_damping_j", Energies, titled("energy dissipated by damping"), "dissipated by the damping β_R and by β₂ > ½ since the start, added up from samples of the steps: where next to nothing is dissipated, it may be slightly negative", |row| of(row, |record| record.energy.damping_j)),
     quantity("energy_contact_loss_j", Energies, titled("energy lost in contact impacts"), "lost since the start by nodes that close or begin to stick, and by a contact layer", |row| of(row, |record| record.energy.contact_loss_j)),
-    detail("plastic_state", Result, "plastic flow of a pin that may yield: elastic (nothing has yielded), shaken_down (nothing yields in the window), yielding", |row| plastic(row, PlasticFlow::state)),
+    detail("plastic_state", Result, "plastic flow of a pin that may yield: elastic (nothing has yielded), shaken_down (plastic_share is at most 0.0001), yielding", |row| plastic(row, PlasticFlow::state)),
     quantity("plastic_strain_max", Result, titled("largest plastic strain"), "largest plastic strain of the pin at the end of the run", |row| plastic(row, |plastic| plastic.strain_max)),
-    quantity("plastic_share", Result, titled("plastic work over that of friction"), "plastic work within the window over the work of friction there", |row| plastic(row, |plastic| plastic.share)),
-    quantity("energy_plastic_j", Energies, titled("plastic work"), "plastic work of the pin since the start", |row| plastic(row, |plastic| plastic.work_j)),
+    quantity("plastic_share", Result, titled("share of plastic work"), "plastic work within the window over the sum of it and the work of friction there", |row| plastic(row, |plastic| plastic.share)),
+    quantity("energy_plastic_j", Energies, titled("plastic work"), "plastic work of the pin since the start, by the stress without that of dampers", |row| plastic(row, |plastic| plastic.work_j)),
     quantity("front_centre_y_peak_to_peak_m", Nodes, BY_MEANING, "centre of the leading end: peak-to-peak displacement in y", |row| front(row, |node| node.y_peak_to_peak_m)),
     quantity("front_centre_lift_max_m", Nodes, BY_MEANING, "centre of the leading end: largest gap", |row| front(row, |node| node.lift_max_m)),
     quantity("front_centre_sigma_n_max_pa", Nodes, BY_MEANING, "centre of the leading end: largest normal contact stress, smoothed", |row| front(row, |node| node.sigma_n_max_pa)),
@@ -223,6 +223,9 @@ fn in_words(obstacle: &Obstacle) -> String {
         }
         Obstacle::Swing { imbalance, .. } => {
             format!("something still swings or creeps: clamp and contact differ by {}", number(*imbalance))
+        }
+        Obstacle::Flow { share } => {
+            format!("the material goes on yielding: share of the plastic work {}", number(*share))
         }
         Obstacle::Creep { still_to_come, .. } => {
             format!("the mean friction creeps: {} still to come", number(*still_to_come))

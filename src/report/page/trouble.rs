@@ -1,7 +1,7 @@
-//! Jobs that failed, that did not become periodic or as exact as they ask for, that yield in every cycle, or that are missing: where they
-//! are in the grid, and why.
+//! Jobs that failed, that did not become periodic or as exact as they ask for, that go on yielding, or that are missing: where they are in
+//! the grid, and why.
 
-use crate::analysis::Outcome;
+use crate::analysis::{Outcome, PlasticFlow};
 use crate::publish::page::{Block, Grid, Section, Text};
 use crate::publish::value;
 use crate::report::layout::parameters_in_words;
@@ -21,7 +21,7 @@ pub(super) fn section(rows: &[JobRow]) -> Option<Section> {
     blocks.extend(list("Failed jobs", rows, failed));
     blocks.extend(list("Not periodic", rows, not_periodic));
     blocks.extend(list("Accuracy not reached", rows, not_accurate));
-    blocks.extend(list("Yielding in every cycle", rows, yields));
+    blocks.extend(list("Still yielding", rows, yields));
     blocks.extend(list("Missing jobs", rows, missing));
     (!blocks.is_empty()).then(|| Section::new("trouble", "Trouble", blocks))
 }
@@ -73,12 +73,11 @@ fn not_accurate(row: &JobRow) -> Option<Text> {
     Some(words.into())
 }
 
-/// A periodic job whose shape goes on changing.
+/// A job whose shape goes on changing.
 fn yields(row: &JobRow) -> Option<Text> {
-    let record = row.record().filter(|record| record.outcome == Outcome::Periodic)?;
-    let flow = record.plastic.filter(|flow| flow.share != 0.0)?;
+    let flow = row.record()?.plastic.filter(PlasticFlow::is_yielding)?;
     let words = format!(
-        "the plastic work is {} % of the work of friction, so the shape of the pin may go on changing; the plastic strain is at most {}",
+        "{} % of what is dissipated in the window is plastic work, so the shape of the pin may go on changing; the plastic strain is up to {}",
         value::significant(100.0 * flow.share, 2),
         value::significant(flow.strain_max, 2)
     );

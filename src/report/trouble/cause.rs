@@ -55,6 +55,13 @@ fn obstacle(record: &JobRecord, numerics: Option<&JobNumerics>) -> (String, Stri
                 ))
             ),
         ),
+        Some(Obstacle::Flow { share }) => (
+            "flow".to_owned(),
+            format!(
+                "the material goes on yielding: the plastic work is {} of what flow and friction dissipate",
+                significant(*share)
+            ),
+        ),
         Some(Obstacle::Creep { still_to_come, imbalance }) => (
             "creep".to_owned(),
             format!(

@@ -279,30 +279,38 @@ fn clamp(spec: &JobSpec) -> Option<Doubt> {
     })
 }
 
-/// A pin that flows as a whole under its load, and a yield stress that no metal has.
+/// A pin that flows as a whole under its load, and a yield stress that no metal has. Returns the first doubt of all materials.
 fn flow(spec: &JobSpec) -> Option<Doubt> {
     let pin = &spec.scene.pin;
-    let yield_stress_pa = pin.plasticity.as_ref()?.yield_stress_pa;
-    let pressure = spec.scene.load.force_n / (pin.base_area_m2() * yield_stress_pa);
-    let elastic = yield_stress_pa / pin.young_modulus_pa;
-    let doubt = |fields, size, message: String, help: &str| Doubt {
-        kind: "yield",
-        fields: owned(fields),
-        size,
-        message,
-        help: help.to_owned(),
-    };
-    if pressure > 1.0 {
-        let message =
-            format!("the mean pressure is {} times the yield stress: the whole pin flows", short(pressure));
-        let help = "check the units of the load [N], the yield stress [Pa] and the size [m]";
-        let fields = &["scene.load.force_n", "scene.pin.plasticity.yield_stress_pa", "scene.pin.size_m"];
-        return Some(doubt(fields, pressure, message, help));
-    }
-    (elastic > MOST_ELASTIC).then(|| {
-        let message = format!("the material yields at an elastic strain of {}", percent(elastic));
-        let fields = &["scene.pin.plasticity.yield_stress_pa", "scene.pin.young_modulus_pa"];
-        doubt(fields, elastic, message, "check the units [Pa]; metals yield at 0.01 % to 1 %")
+    let own = (String::from("scene.pin"), &pin.plasticity, pin.young_modulus_pa);
+    let regions = pin.regions.iter().enumerate().map(|(number, region)| {
+        (format!("scene.pin.regions[{number}]"), &region.plasticity, region.young_modulus_pa)
+    });
+    std::iter::once(own).chain(regions).find_map(|(at, plasticity, young_modulus_pa)| {
+        let yield_stress_pa = plasticity.as_ref()?.yield_stress_pa?;
+        let pressure = spec.scene.load.force_n / (pin.base_area_m2() * yield_stress_pa);
+        let elastic = yield_stress_pa / young_modulus_pa;
+        let own = format!("{at}.plasticity.yield_stress_pa");
+        let doubt = |other: &str, size, message: String, help: &str| Doubt {
+            kind: "yield",
+            fields: owned(&[own.as_str(), other]),
+            size,
+            message,
+            help: help.to_owned(),
+        };
+        if pressure > 1.0 {
+            let message = format!(
+                "the mean pressure is {} times the yield stress: without hardening the whole section flows",
+                short(pressure)
+            );
+            let help = "check the units of the load [N], the yield stress [Pa] and the size [m]";
+            return Some(doubt("scene.load.force_n", pressure, message, help));
+        }
+        (elastic > MOST_ELASTIC).then(|| {
+            let message = format!("the material yields at an elastic strain of {}", percent(elastic));
+            let modulus = format!("{at}.young_modulus_pa");
+            doubt(&modulus, elastic, message, "check the units [Pa]; metals yield at 0.01 % to 1 %")
+        })
     })
 }
 

@@ -53,12 +53,12 @@ pub struct HyperelasticOperator {
     /// The numbers of eight elements side by side: group → number → element of the group. The last group is filled up with its last
     /// element.
     numbers: Vec<[f64; WIDTH]>,
-    /// When elements yield; none if no material does.
+    /// When elements yield; none of another law than J₂.
     yielding: Option<Yielding>,
 }
 
 impl HyperelasticOperator {
-    /// The elements of a mesh. There is one entry of `yielding` for each material that yields; the others stay elastic.
+    /// The elements of a mesh. With the law J₂ there is an entry of `yielding` for each material, which is `None` if it stays elastic.
     ///
     /// # Errors
     /// The number of an element that is inverted.
@@ -98,7 +98,7 @@ impl HyperelasticOperator {
         Ok(Self { law, is_selective, nodes, numbers, yielding })
     }
 
-    /// When elements yield; none if no material does.
+    /// When elements yield; returns `None` for another law than J₂.
     pub fn yielding(&self) -> Option<&Yielding> {
         self.yielding.as_ref()
     }

@@ -40,7 +40,7 @@ const MAX_STEPS: usize = 200;
 impl YieldLaw {
     pub fn of(plasticity: &Plasticity) -> Self {
         Self {
-            yield_stress_pa: plasticity.yield_stress_pa,
+            yield_stress_pa: plasticity.yield_stress_pa.unwrap_or(f64::INFINITY),
             hardening_pa: plasticity.hardening_modulus_pa.unwrap_or(0.0),
             saturation: [
                 plasticity.saturation_stress_pa.unwrap_or(0.0),
@@ -68,8 +68,8 @@ impl YieldLaw {
     }
 
     /// Lets a point flow in a time step, if its stress is beyond the yield surface. `h` is the displacement gradient whose stress yields, and
-    /// `undamped` that of the displacements alone. Returns the plastic work per undeformed volume \[J/m³\], by the mean of the stresses before and
-    /// after the step; `None` if the point does not yield.
+    /// `undamped` that of the displacements alone. Returns the plastic work per undeformed volume \[J/m³\], by the mean of the stresses at the ends
+    /// of the step; `None` if the point does not yield.
     pub fn flow(
         &self,
         state: &mut PointState,
@@ -93,33 +93,39 @@ impl YieldLaw {
         }
         let n = trial / distance;
         let after = |gamma: f64| change(&elastic, &n, gamma);
-        let remaining = |gamma: f64| {
+        let kinematic_pa = 2.0 / 3.0 * self.kinematic_pa;
+        // With a rate the search is for the overstress x over the yield stress, of which the yield stress is a smooth function, and else for Δγ.
+        let rate =
+            self.rate.map(|[reference_per_s, exponent]| [time_step_s * reference_per_s / ROOT, exponent]);
+        let gamma_of = |x: f64| rate.map_or(x, |[unit, exponent]| unit * libm::pow(x, exponent));
+        let remaining = |x: f64| {
+            let gamma = gamma_of(x);
             let stress = deviator(&(elastic + after(gamma))) * modulus - back;
-            let relative = stress - n * (2.0 / 3.0 * self.kinematic_pa * gamma);
-            let strain = ROOT * gamma;
-            let rate = self.rate.map_or(1.0, |[reference_per_s, exponent]| {
-                1.0 + libm::pow(strain / (time_step_s * reference_per_s), 1.0 / exponent)
-            });
-            let yield_pa = (self.yield_stress_pa + self.rise_pa(state.strain + strain)) * rate;
+            let relative = stress - n * (kinematic_pa * gamma);
+            let rise_pa = self.rise_pa(state.strain + ROOT * gamma);
+            let yield_pa = (self.yield_stress_pa + rise_pa) * if rate.is_some() { 1.0 + x } else { 1.0 };
             // Beyond the end of the flow the stress turns round.
             relative.dot(&n).signum() * relative.norm() - ROOT * yield_pa
         };
-        let gamma = root(&remaining, excess, excess / (2.0 * modulus), TOLERANCE * distance);
+        let most = excess / (2.0 * modulus);
+        let guess =
+            rate.map_or(most, |[unit, exponent]| libm::pow(most / unit, 1.0 / exponent).min(excess / limit));
+        let gamma = gamma_of(root(&remaining, excess, guess, TOLERANCE * distance));
         let change = after(gamma);
+        // What the stress falls by in the step, and what it grew by since the step before.
+        let fall_pa = -(deviator(&change) * modulus).dot(&n);
+        let rise_before_pa = state.rise_pa;
         let before_j = (undamped + identity) * state.plastic * (undamped + identity).transpose();
         state.plastic += symmetric(&(inverse * change * inverse.transpose()));
         let after_j = (undamped + identity) * state.plastic * (undamped + identity).transpose();
-        state.back += symmetric(
-            &(inverse
-                * n
-                * inverse.transpose()
-                * (2.0 / 3.0 * self.kinematic_pa * gamma / isochoric(volume))),
-        );
+        state.back +=
+            symmetric(&(inverse * n * inverse.transpose() * (kinematic_pa * gamma / isochoric(volume))));
         state.strain += ROOT * gamma;
         state.rise_pa = self.rise_pa(state.strain);
         let of_undamped = shear_pa * isochoric((undamped + identity).determinant());
         let drop_j_m3 = 0.5 * of_undamped * (before_j - after_j).trace();
-        Some(drop_j_m3 - 0.5 * gamma * excess)
+        let growth_pa = ROOT * (state.rise_pa - rise_before_pa) + kinematic_pa * gamma;
+        Some(drop_j_m3 - 0.5 * gamma * (fall_pa + growth_pa))
     }
 }
 

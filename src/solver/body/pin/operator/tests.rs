@@ -247,7 +247,7 @@ fn yielding_lanes_do_not_see_each_other() {
             let parts = MeshParts { element, ..MeshParts::of_block(&mesh) };
             let general = GeneralMesh::new(&parts, Tilt::default()).unwrap();
             let plasticity =
-                Plasticity { yield_stress_pa: 1.0e6, kinematic_modulus_pa, ..Plasticity::default() };
+                Plasticity { yield_stress_pa: Some(1.0e6), kinematic_modulus_pa, ..Plasticity::default() };
             let law = MaterialLaw::J2;
             let operator = Operator::Hyperelastic {
                 elements: HyperelasticOperator::new(&general, &[MATERIAL], law, &[Some(plasticity)]).unwrap(),
