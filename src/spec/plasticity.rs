@@ -43,8 +43,11 @@ pub struct Plasticity {
 }
 
 impl Plasticity {
-    /// Adds every violated limit to `found`; `at` is the path of the object.
-    fn check(&self, at: &str, found: &mut Violations) {
+    /// Adds every violated limit to `found`; `at` is the path of the object, and `yields` whether the pin has a law that uses it.
+    fn check_in(&self, yields: bool, at: &str, found: &mut Violations) {
+        if !yields {
+            found.add(at, "an object", ONLY_J2);
+        }
         let field = |name: &str| format!("{at}.{name}");
         match self.yield_stress_pa {
             Some(stress_pa) => _ = found.within(&field("yield_stress_pa"), stress_pa),
@@ -118,8 +121,7 @@ impl JobSpec {
                 let right = "an object with yield_stress_pa: scene.pin.material = j2 yields";
                 found.add("scene.pin.plasticity", "absent", right);
             }
-            Some(_) if !yields => found.add("scene.pin.plasticity", "an object", ONLY_J2),
-            Some(plasticity) => plasticity.check("scene.pin.plasticity", found),
+            Some(plasticity) => plasticity.check_in(yields, "scene.pin.plasticity", found),
             None => {}
         }
         if yields && pin.strains == Strains::Small {
@@ -128,10 +130,8 @@ impl JobSpec {
         }
         for (number, region) in pin.regions.iter().enumerate() {
             let at = format!("scene.pin.regions[{number}].plasticity");
-            match &region.plasticity {
-                Some(_) if !yields => found.add(&at, "an object", ONLY_J2),
-                Some(plasticity) => plasticity.check(&at, found),
-                None => {}
+            if let Some(plasticity) = &region.plasticity {
+                plasticity.check_in(yields, &at, found);
             }
         }
         if yields && self.continuation.is_some() {

@@ -35,7 +35,7 @@ pub fn full() -> JobSpec {
         hardening_modulus_pa: Some(1.0e8),
         saturation_stress_pa: Some(2.0e8),
         saturation_strain: Some(0.1),
-        hardening_curve: vec![[0.0, 3.0e8], [0.1, 4.0e8]],
+        hardening_curve: vec![[0.01, 3.0e8], [0.1, 4.0e8]],
         kinematic_modulus_pa: Some(1.5e8),
         rate_reference_per_s: Some(1.0e3),
         rate_exponent: Some(4.0),

@@ -18,41 +18,27 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
+use super::elements::{Elements, LAMBDA, SHEAR, WIDTH};
 use super::gradient::{
     Corners, OF_POINT, Slopes, across, cofactor, deformed, gradient, green_strain, slopes_of, spread,
 };
 use super::node_scratch::NodeScratch;
 use super::yielding::Yielding;
 use super::{Pass, Past, Product, Scratch, ScratchOf};
-use crate::solver::body::hexahedron::gauss_jacobians;
 use crate::solver::body::pin::GeneralMesh;
 use crate::solver::field::FieldOf;
 use crate::solver::material::Material;
 use crate::solver::number::Number;
 use crate::solver::simd::dispatch;
-use crate::spec::{Element, MaterialLaw, Plasticity};
+use crate::spec::{MaterialLaw, Plasticity};
 use fearless_simd::{Simd, f64x8, prelude::*};
 
-/// Slots of a vector.
-pub(super) const WIDTH: usize = 8;
-
 const DOUBLE: &str = "large strains are computed in double precision";
-
-/// Places of the numbers of an element behind those of its points: λ \[Pa\], G \[Pa\] and 1/V \[1/m³\].
-pub(super) const LAMBDA: usize = 8 * OF_POINT;
-pub(super) const SHEAR: usize = LAMBDA + 1;
-const INVERSE_VOLUME: usize = LAMBDA + 2;
-pub(super) const NUMBERS: usize = LAMBDA + 3;
 
 /// Elements with large strains.
 #[derive(Debug, Clone)]
 pub struct HyperelasticOperator {
-    law: MaterialLaw,
-    pub(super) is_selective: bool,
-    nodes: Vec<[u32; 8]>,
-    /// The numbers of eight elements side by side: group → number → element of the group. The last group is filled up with its last
-    /// element.
-    numbers: Vec<[f64; WIDTH]>,
+    elements: Elements,
     /// When elements yield; none of another law than J₂.
     yielding: Option<Yielding>,
 }
@@ -68,34 +54,9 @@ impl HyperelasticOperator {
         law: MaterialLaw,
         yielding: &[Option<Plasticity>],
     ) -> Result<Self, usize> {
-        let count = mesh.elements().len();
-        let mut numbers = vec![[0.0; WIDTH]; count.div_ceil(WIDTH) * NUMBERS];
-        for slot in 0..count.next_multiple_of(WIDTH) {
-            let index = slot.min(count - 1);
-            let element = &mesh.elements()[index];
-            let material = &materials[element.material];
-            let mut of_element = [0.0; NUMBERS];
-            let mut volume = 0.0;
-            let points = gauss_jacobians(&mesh.corners_m(element)).ok_or(index)?;
-            for (point, (inverse, volume_m3)) in points.iter().enumerate() {
-                let own = &mut of_element[point * OF_POINT..][..OF_POINT];
-                for (place, number) in own[..9].iter_mut().enumerate() {
-                    *number = inverse[(place % 3, place / 3)];
-                }
-                own[9] = *volume_m3;
-                volume += volume_m3;
-            }
-            of_element[LAMBDA] = material.lame_lambda_pa();
-            of_element[SHEAR] = material.shear_modulus_pa();
-            of_element[INVERSE_VOLUME] = 1.0 / volume;
-            for (number, value) in of_element.into_iter().enumerate() {
-                numbers[slot / WIDTH * NUMBERS + number][slot % WIDTH] = value;
-            }
-        }
-        let is_selective = mesh.element == Element::Selective;
-        let nodes = mesh.elements().iter().map(|element| element.nodes.map(|node| node as u32)).collect();
+        let elements = Elements::new(mesh, materials, law)?;
         let yielding = (law == MaterialLaw::J2).then(|| Yielding::new(mesh, yielding));
-        Ok(Self { law, is_selective, nodes, numbers, yielding })
+        Ok(Self { elements, yielding })
     }
 
     /// When elements yield; returns `None` for another law than J₂.
@@ -105,7 +66,7 @@ impl HyperelasticOperator {
 
     /// The law.
     pub fn law(&self) -> MaterialLaw {
-        self.law
+        self.elements.law
     }
 
     /// The internal forces of displacements, in one pass over the mesh.
@@ -133,7 +94,7 @@ impl HyperelasticOperator {
             None => self.add_forces(lanes, x, y),
             Some(yielding) => {
                 let undamped = R::as_doubles(undamped).unwrap_or_default();
-                yielding.add_forces(self, lanes, [x, undamped], y, &mut past.doubles());
+                yielding.add_forces(&self.elements, lanes, [x, undamped], y, &mut past.doubles());
             }
         }
         for line in 0..scratch.layout.lines() {
@@ -147,30 +108,30 @@ impl HyperelasticOperator {
 
     #[inline(always)]
     fn add_forces_in<S: Simd>(&self, simd: S, lanes: usize, x: &[f64], y: &mut [f64]) {
-        for first in (0..self.nodes.len()).step_by(WIDTH / lanes) {
+        for first in (0..self.elements.count()).step_by(WIDTH / lanes) {
             let mut corners = [[f64x8::splat(simd, 0.0); 3]; 8];
-            self.corners(first, lanes, x, &mut corners);
+            self.elements.corners(first, lanes, x, &mut corners);
             match lanes {
                 8 => self.force(
                     simd,
                     #[inline(always)]
-                    |number| f64x8::splat(simd, self.of_one(first, number)),
+                    |number| f64x8::splat(simd, self.elements.of_one(first, number)),
                     &mut corners,
                 ),
                 1 => self.force(
                     simd,
                     #[inline(always)]
-                    |number| f64x8::load_array_ref(simd, self.of_all(first, number)),
+                    |number| f64x8::load_array_ref(simd, self.elements.of_all(first, number)),
                     &mut corners,
                 ),
                 lanes => self.force(
                     simd,
                     #[inline(always)]
-                    |number| self.of_some(simd, first, number, lanes),
+                    |number| self.elements.of_some(simd, first, number, lanes),
                     &mut corners,
                 ),
             }
-            self.add(first, &corners, lanes, y);
+            self.elements.add(first, &corners, lanes, y);
         }
     }
 
@@ -196,19 +157,19 @@ impl HyperelasticOperator {
 
     fn state(&self, lanes: usize, x: &[f64], history: &[f64]) -> ([f64; WIDTH], [Option<usize>; WIDTH]) {
         let (mut energy_j, mut inverted) = ([0.0; WIDTH], [None; WIDTH]);
-        for first in (0..self.nodes.len()).step_by(WIDTH / lanes) {
+        for first in (0..self.elements.count()).step_by(WIDTH / lanes) {
             let (energies, volumes) = dispatch!(simd => {
                 let mut u = [[f64x8::splat(simd, 0.0); 3]; 8];
-                self.corners(first, lanes, x, &mut u);
-                let numbers = |number| self.of_some(simd, first, number, lanes);
+                self.elements.corners(first, lanes, x, &mut u);
+                let numbers = |number| self.elements.of_some(simd, first, number, lanes);
                 match &self.yielding {
                     None => self.energy(simd, numbers, &u),
-                    Some(yielding) => yielding.energy(simd, self, numbers, &u, history, [first, lanes]),
+                    Some(yielding) => yielding.energy(simd, &self.elements, numbers, &u, history, [first, lanes]),
                 }
             });
             for slot in 0..WIDTH {
                 let (element, lane) = (first + slot / lanes, slot % lanes);
-                if element < self.nodes.len() {
+                if element < self.elements.count() {
                     energy_j[lane] += energies[slot];
                     if inverted[lane].is_none() && volumes[slot] <= 0.0 {
                         inverted[lane] = Some(element);
@@ -219,81 +180,6 @@ impl HyperelasticOperator {
         (energy_j, inverted)
     }
 
-    fn of_all(&self, first: usize, number: usize) -> &[f64; WIDTH] {
-        &self.numbers[first / WIDTH * NUMBERS + number]
-    }
-
-    #[inline(always)]
-    fn of_one(&self, element: usize, number: usize) -> f64 {
-        self.of_all(element, number)[element % WIDTH]
-    }
-
-    #[inline(always)]
-    pub(super) fn of_some<S: Simd>(&self, simd: S, first: usize, number: usize, lanes: usize) -> f64x8<S> {
-        let all = self.of_all(first, number);
-        let row: [f64; WIDTH] = std::array::from_fn(|slot| all[first % WIDTH + slot / lanes]);
-        f64x8::load_array(simd, row)
-    }
-
-    /// The numbers of a group of elements, slot by slot.
-    #[inline(always)]
-    pub(super) fn rows(&self, first: usize, lanes: usize, rows: &mut [[f64; WIDTH]; NUMBERS]) {
-        for (number, row) in rows.iter_mut().enumerate() {
-            let all = self.of_all(first, number);
-            *row = std::array::from_fn(|slot| all[first % WIDTH + slot / lanes]);
-        }
-    }
-
-    /// The displacements of the corners of a group of elements.
-    #[inline(always)]
-    pub(super) fn corners<S: Simd>(&self, first: usize, lanes: usize, x: &[f64], u: &mut Corners<S>) {
-        let simd = u[0][0].simd;
-        for corner in 0..8 {
-            for c in 0..3 {
-                if lanes == WIDTH {
-                    let node = self.nodes[first][corner] as usize;
-                    u[corner][c] = f64x8::from_slice(simd, &x[(3 * node + c) * WIDTH..][..WIDTH]);
-                    continue;
-                }
-                let mut row = [0.0; WIDTH];
-                for (nodes, own) in self.nodes[first..].iter().zip(row.chunks_exact_mut(lanes)) {
-                    own.copy_from_slice(&x[(3 * nodes[corner] as usize + c) * lanes..][..lanes]);
-                }
-                u[corner][c] = f64x8::load_array(simd, row);
-            }
-        }
-    }
-
-    /// Adds the forces of a group to its nodes, element after element.
-    #[inline(always)]
-    pub(super) fn add<S: Simd>(&self, first: usize, force: &Corners<S>, lanes: usize, y: &mut [f64]) {
-        if lanes == WIDTH {
-            for (corner, &node) in self.nodes[first].iter().enumerate() {
-                for c in 0..3 {
-                    let sum = &mut y[(3 * node as usize + c) * WIDTH..][..WIDTH];
-                    (f64x8::from_slice(force[corner][c].simd, sum) + force[corner][c]).store_slice(sum);
-                }
-            }
-            return;
-        }
-        let mut rows = [[[0.0; WIDTH]; 3]; 8];
-        for corner in 0..8 {
-            for c in 0..3 {
-                force[corner][c].store_array(&mut rows[corner][c]);
-            }
-        }
-        for (place, nodes) in self.nodes[first..].iter().take(WIDTH / lanes).enumerate() {
-            for (corner, &node) in nodes.iter().enumerate() {
-                for c in 0..3 {
-                    let sums = &mut y[(3 * node as usize + c) * lanes..][..lanes];
-                    for (sum, value) in sums.iter_mut().zip(&rows[corner][c][place * lanes..]) {
-                        *sum += value;
-                    }
-                }
-            }
-        }
-    }
-
     /// Replaces the displacements of the corners by the forces on them: Σ P ∂N/∂X dV with the first Piola–Kirchhoff stress P = ∂W/∂F.
     #[inline(always)]
     fn force<S: Simd>(&self, simd: S, number: impl Fn(usize) -> f64x8<S>, corners: &mut Corners<S>) {
@@ -301,11 +187,12 @@ impl HyperelasticOperator {
         let mut slopes: Slopes<S> = [[[all(0.0); 3]; 4]; 3];
         slopes_of(simd, corners, &mut slopes);
         let (lambda, shear) = (number(LAMBDA), number(SHEAR));
-        let mean = if self.is_selective { Some(self.mean(simd, &number, &slopes)) } else { None };
+        let mean =
+            if self.elements.is_selective { Some(self.elements.mean(simd, &number, &slopes)) } else { None };
         let mut sums: Slopes<S> = [[[all(0.0); 3]; 4]; 3];
         for point in 0..8 {
             let h = gradient(simd, &number, &slopes, point);
-            let p = match self.law {
+            let p = match self.elements.law {
                 MaterialLaw::NeoHookean | MaterialLaw::J2 => {
                     // P = G (F − (∂J/∂F)/J) + ½λ (θ − 1/θ) ∂J/∂F, with 1 + j = J, 1 + t = θ and ∂J/∂F = 1 + K.
                     let (k, j) = cofactor(&h);
@@ -362,8 +249,11 @@ impl HyperelasticOperator {
         let mut slopes: Slopes<S> = [[[all(0.0); 3]; 4]; 3];
         slopes_of(simd, u, &mut slopes);
         let (lambda, shear) = (number(LAMBDA).to_array(), number(SHEAR).to_array());
-        let mean: [f64; WIDTH] =
-            if self.is_selective { self.mean(simd, &number, &slopes).to_array() } else { [0.0; WIDTH] };
+        let mean: [f64; WIDTH] = if self.elements.is_selective {
+            self.elements.mean(simd, &number, &slopes).to_array()
+        } else {
+            [0.0; WIDTH]
+        };
         let (mut energy_j, mut smallest) = ([0.0; WIDTH], [f64::INFINITY; WIDTH]);
         let mut volume = [0.0; WIDTH];
         for point in 0..8 {
@@ -384,48 +274,25 @@ impl HyperelasticOperator {
                 smallest[slot] = f64::min(smallest[slot], 1.0 + j[slot]);
                 volume[slot] += weight[slot];
                 // `at` is J − 1, or tr E.
-                let dilation = |at: f64| match self.law {
+                let dilation = |at: f64| match self.elements.law {
                     MaterialLaw::NeoHookean | MaterialLaw::J2 => {
                         0.25 * lambda[slot] * (at * (2.0 + at) - 2.0 * libm::log1p(at))
                     }
                     MaterialLaw::StVenantKirchhoff => 0.5 * lambda[slot] * at * at,
                 };
-                let (at, distortion) = match self.law {
+                let (at, distortion) = match self.elements.law {
                     MaterialLaw::NeoHookean | MaterialLaw::J2 => {
                         (j[slot], shear[slot] * (trace[slot] - libm::log1p(j[slot])))
                     }
                     MaterialLaw::StVenantKirchhoff => (trace[slot], shear[slot] * square[slot]),
                 };
-                let own = if self.is_selective { 0.0 } else { dilation(at) };
+                let own = if self.elements.is_selective { 0.0 } else { dilation(at) };
                 energy_j[slot] += weight[slot] * (distortion + own);
-                if self.is_selective && point == 7 {
+                if self.elements.is_selective && point == 7 {
                     energy_j[slot] += volume[slot] * dilation(mean[slot]);
                 }
             }
         }
         (energy_j, smallest)
-    }
-
-    /// The mean over an element of what the term of the law with λ depends on: J − 1, or tr E.
-    #[inline(always)]
-    pub(super) fn mean<S: Simd>(
-        &self,
-        simd: S,
-        number: &impl Fn(usize) -> f64x8<S>,
-        slopes: &Slopes<S>,
-    ) -> f64x8<S> {
-        let mut sum = f64x8::splat(simd, 0.0);
-        for point in 0..8 {
-            let h = gradient(simd, number, slopes, point);
-            let value = match self.law {
-                MaterialLaw::NeoHookean | MaterialLaw::J2 => cofactor(&h).1,
-                MaterialLaw::StVenantKirchhoff => {
-                    let strain = green_strain(simd, &h);
-                    strain[0][0] + strain[1][1] + strain[2][2]
-                }
-            };
-            sum += number(point * OF_POINT + 9) * value;
-        }
-        sum * number(INVERSE_VOLUME)
     }
 }

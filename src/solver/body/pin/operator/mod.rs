@@ -13,6 +13,7 @@
 //! displacements u + β_R p: the damper is β_R times the stiffness of the deformed pin, to the first order in β_R p.
 
 mod assembled;
+mod elements;
 mod gradient;
 mod hyperelastic;
 mod node_scratch;

@@ -1,10 +1,12 @@
 //! Plastic flow at a point: what yields comes back to the yield surface.
 
-use super::yielding::ROOT;
 use crate::spec::Plasticity;
 use nalgebra::Matrix3;
 
 pub type Matrix = Matrix3<f64>;
+
+/// √⅔.
+pub(super) const ROOT: f64 = 0.816_496_580_927_726;
 
 /// What a point keeps of its past.
 #[derive(Debug, Clone, Copy, PartialEq)]

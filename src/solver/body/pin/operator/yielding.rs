@@ -20,11 +20,11 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
+use super::elements::{Elements, LAMBDA, NUMBERS, SHEAR, WIDTH};
 use super::gradient::{
     Corners, OF_POINT, Slopes, Tensor, across, cofactor, deformed, gradient, slopes_of, spread,
 };
-use super::hyperelastic::{HyperelasticOperator, LAMBDA, NUMBERS, SHEAR, WIDTH};
-use super::return_mapping::{Matrix, PointState, YieldLaw, components, matrix};
+use super::return_mapping::{Matrix, PointState, ROOT, YieldLaw, components, matrix};
 use super::{Past, dispatch};
 use crate::solver::body::pin::GeneralMesh;
 use crate::spec::Plasticity;
@@ -34,9 +34,6 @@ use fearless_simd::{Simd, f64x8, prelude::*};
 const ALPHA: usize = 6;
 const RISE: usize = 7;
 const BACK: usize = 8;
-
-/// √⅔.
-pub(super) const ROOT: f64 = 0.816_496_580_927_726;
 
 /// Which elements yield, and when.
 #[derive(Debug, Clone)]
@@ -193,7 +190,7 @@ impl Yielding {
     /// without those of damping; the latter are empty if there is no damping.
     pub(super) fn add_forces(
         &self,
-        elements: &HyperelasticOperator,
+        elements: &Elements,
         lanes: usize,
         displacements: [&[f64]; 2],
         y: &mut [f64],
@@ -206,7 +203,7 @@ impl Yielding {
     fn add_forces_in<S: Simd>(
         &self,
         simd: S,
-        elements: &HyperelasticOperator,
+        elements: &Elements,
         lanes: usize,
         [x, undamped]: [&[f64]; 2],
         y: &mut [f64],
@@ -224,7 +221,7 @@ impl Yielding {
         }
     }
 
-    /// Replaces the displacements of the corners by the forces on them, as [`HyperelasticOperator`] does.
+    /// Replaces the displacements of the corners by the forces on them, as other materials do.
     #[inline(always)]
     fn force<S: Simd>(&self, simd: S, group: &Group<'_>, past: &mut Past<'_, f64>, corners: &mut Corners<S>) {
         let all = |value: f64| f64x8::splat(simd, value);
@@ -379,7 +376,7 @@ impl Yielding {
     pub(super) fn energy<S: Simd>(
         &self,
         simd: S,
-        elements: &HyperelasticOperator,
+        elements: &Elements,
         number: impl Fn(usize) -> f64x8<S>,
         u: &Corners<S>,
         history: &[f64],
@@ -422,7 +419,7 @@ impl Yielding {
 
 /// A group of elements in the slots of vectors.
 struct Group<'a> {
-    elements: &'a HyperelasticOperator,
+    elements: &'a Elements,
     /// Their numbers, slot by slot.
     numbers: &'a [[f64; WIDTH]; NUMBERS],
     /// The first element, and the number of lanes.
