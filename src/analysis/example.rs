@@ -86,7 +86,7 @@ impl JobRecord {
             windows: [Direction::Up, Direction::Down]
                 .map(|direction| ProgramWindow { direction, ..ProgramWindow::example() })
                 .into(),
-            plastic: Some(PlasticFlow { strain_max: 0.004, work_j: 2.0e-5, share: 0.03 }),
+            plastic: Some(PlasticFlow { strain_max: 0.004, work_j: 2.0e-5, share: 5.0e-5 }),
             energy: EnergyTotals::default(),
             nodes: OBSERVED_NAMES.map(node).into(),
         }

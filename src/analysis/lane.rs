@@ -166,7 +166,7 @@ impl LaneAnalysis {
         let is_due = decay && (!self.oscillations_decay || self.trailing.begins_block());
         if is_due && !self.decays {
             self.decays = self.settling().is_done(self.spec.detection.drift_tolerance)
-                && self.trailing.flow_share(energies) <= NEGLIGIBLE_SHARE;
+                && self.trailing.flow_share(energies).abs() <= NEGLIGIBLE_SHARE;
         }
         self.decays &= decay;
         self.oscillations_decay = decay;
@@ -298,7 +298,7 @@ impl LaneAnalysis {
     fn obstacle(&self, energies: &Energies) -> Obstacle {
         if self.oscillations_decay {
             let share = self.trailing.flow_share(energies);
-            if share > NEGLIGIBLE_SHARE {
+            if share.abs() > NEGLIGIBLE_SHARE {
                 return Obstacle::Flow { share };
             }
             let Settling { still_to_come, imbalance, .. } = self.settling();

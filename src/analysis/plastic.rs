@@ -4,8 +4,8 @@ use super::cycles::Cycle;
 use crate::solver::energy::Energies;
 use serde::{Deserialize, Serialize};
 
-/// Share of the plastic work in what plastic flow and friction dissipate, below which nothing counts as yielding. So much of the work moves μ\*
-/// by as little.
+/// Share of the plastic work in what plastic flow and friction dissipate, below which nothing counts as yielding. A plastic work of this share
+/// changes μ\* by about the same share.
 pub const NEGLIGIBLE_SHARE: f64 = 1.0e-4;
 
 /// The plastic flow of a pin that may yield.
@@ -31,7 +31,7 @@ impl PlasticFlow {
 
     /// Whether it goes on within the averaging window.
     pub fn is_yielding(&self) -> bool {
-        self.share > NEGLIGIBLE_SHARE
+        self.share.abs() > NEGLIGIBLE_SHARE
     }
 }
 
@@ -45,10 +45,10 @@ fn share_of([plastic_j, friction_j]: [f64; 2]) -> f64 {
     if plastic_j == 0.0 || both_j <= 0.0 { 0.0 } else { plastic_j / both_j }
 }
 
-/// The shares of the two halves of consecutive cycles.
-pub(super) fn shares_of_halves(cycles: &[Cycle]) -> [f64; 2] {
-    let (first, last) = cycles.split_at(cycles.len() / 2);
-    [first, last].map(|part| {
+/// The shares of the first and the last half of consecutive cycles, each in whole groups of `m`.
+pub(super) fn shares_of_halves(cycles: &[Cycle], m: usize) -> [f64; 2] {
+    let half = cycles.len() / m / 2 * m;
+    [&cycles[..half], &cycles[cycles.len() - half..]].map(|part| {
         let sum = |of: fn(&Cycle) -> f64| part.iter().map(of).sum::<f64>();
         share_of([sum(|cycle| cycle.plastic_j), sum(|cycle| cycle.friction_j)])
     })
@@ -56,7 +56,7 @@ pub(super) fn shares_of_halves(cycles: &[Cycle]) -> [f64; 2] {
 
 /// Whether the shares of two halves are negligible, or the same within `tolerance` of the larger one.
 pub(super) fn stands_still([first, last]: [f64; 2], tolerance: f64) -> bool {
-    let most = first.max(last);
+    let most = first.abs().max(last.abs());
     most <= NEGLIGIBLE_SHARE || (last - first).abs() <= tolerance * most
 }
 

@@ -66,7 +66,7 @@ fn find_groups(
         let groups: Vec<[f64; FIGURES]> = window.chunks_exact(m).map(|group| kind.figures(group)).collect();
         let is_steady = repeats(&groups, detection, kind)
             && is_balanced(window, detection)
-            && flow_stands_still(window, detection);
+            && flow_stands_still(window, m, detection);
         is_steady.then_some(SteadyState { crossings_per_cycle: m, window_crossings: window.len() })
     };
     let window = last_groups(cycles, m, detection.cycles)?;
@@ -85,8 +85,8 @@ fn is_balanced(window: &[Cycle], detection: &Detection) -> bool {
 }
 
 /// Whether the material yields as much in both halves of a window.
-fn flow_stands_still(window: &[Cycle], detection: &Detection) -> bool {
-    plastic::stands_still(shares_of_halves(window), detection.tolerance)
+fn flow_stands_still(window: &[Cycle], m: usize, detection: &Detection) -> bool {
+    plastic::stands_still(shares_of_halves(window, m), detection.tolerance)
 }
 
 /// [`Figures::imbalance`] of a window.
@@ -126,7 +126,7 @@ pub enum Obstacle {
     },
     /// The last cycles repeat, or all oscillations decay, but the material goes on yielding.
     Flow {
-        /// Plastic work over the sum of it and the work of friction.
+        /// Plastic work over the sum of it and the work of friction, in the half of the window where it is larger.
         share: f64,
     },
     /// All oscillations decay, but the mean friction has not come to its end.
@@ -148,9 +148,9 @@ pub fn obstacle(cycles: &[Cycle], detection: &Detection, slow: Option<SlowTimes>
             return Some((f64::INFINITY, Obstacle::SlipOnly));
         }
         if repeats(&groups, detection, Kind::Normal) {
-            if !flow_stands_still(window, detection) {
-                let [_, share] = shares_of_halves(window);
-                return Some((0.0, Obstacle::Flow { share }));
+            if !flow_stands_still(window, m, detection) {
+                let [first, last] = shares_of_halves(window, m);
+                return Some((0.0, Obstacle::Flow { share: first.max(last) }));
             }
             let covered_s = slow.map(|slow| slow.swing_s + slow.relaxation_s);
             return Some((0.0, Obstacle::Swing { imbalance: imbalance(window), covered_s }));

@@ -11,7 +11,8 @@ pub struct Detection {
     /// Number of consecutive limit cycles over which the per-cycle figures are compared.
     pub cycles: usize,
     /// Largest spread of any per-cycle figure over these cycles: T/F, N/F and the state shares as they
-    /// are; the period, the peak stress and the amplitude of N relative to their means.
+    /// are; the period, the peak stress and the amplitude of N relative to their means. The share of plastic work may differ by as much of itself between the two
+    /// halves of the cycles, unless it is at most 0.0001.
     pub tolerance: f64,
     /// Largest change of the mean of any per-cycle figure from the first to the second half of these cycles.
     pub drift_tolerance: f64,

@@ -37,7 +37,7 @@ pub struct Plasticity {
     /// on the rate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_reference_per_s: Option<f64>,
-    /// q of the rate, whose power is 1/q.
+    /// Exponent q: the yield stress grows by the factor 1 + (ε̄'/D)^(1/q).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_exponent: Option<f64>,
 }

@@ -24,7 +24,7 @@ impl Strains {
     }
 }
 
-/// The law of an elastic material with large strains. For small ones all are Hooke's law with Young's modulus and Poisson's ratio.
+/// The law of a material with large strains. For small ones all are Hooke's law with Young's modulus and Poisson's ratio.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema, IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
@@ -35,7 +35,8 @@ pub enum MaterialLaw {
     /// W = ½λ (tr E)² + G E:E, for large rotations. It softens under compression: in uniaxial strain its force is largest at 58 % of the
     /// length.
     StVenantKirchhoff,
-    /// That of a metal: neo-Hookean until it yields, and von Mises' flow with isotropic and kinematic hardening then.
+    /// For metals. W = ½G (J^(−2/3) tr C − 3) + ½κ (½(J² − 1) − ln J) until the material yields; then it flows (von Mises), with isotropic and
+    /// kinematic hardening.
     J2,
 }
 

@@ -225,7 +225,7 @@ fn in_words(obstacle: &Obstacle) -> String {
             format!("something still swings or creeps: clamp and contact differ by {}", number(*imbalance))
         }
         Obstacle::Flow { share } => {
-            format!("the material goes on yielding: share of the plastic work {}", number(*share))
+            format!("the share of plastic work is neither constant nor negligible: {}", number(*share))
         }
         Obstacle::Creep { still_to_come, .. } => {
             format!("the mean friction creeps: {} still to come", number(*still_to_come))

@@ -73,11 +73,11 @@ fn not_accurate(row: &JobRow) -> Option<Text> {
     Some(words.into())
 }
 
-/// A job whose shape goes on changing.
+/// A job that goes on yielding.
 fn yields(row: &JobRow) -> Option<Text> {
     let flow = row.record()?.plastic.filter(PlasticFlow::is_yielding)?;
     let words = format!(
-        "{} % of what is dissipated in the window is plastic work, so the shape of the pin may go on changing; the plastic strain is up to {}",
+        "the plastic work is {} % of the sum of it and the work of friction in the window, and the shape of the pin may go on changing; the largest plastic strain is {}",
         value::significant(100.0 * flow.share, 2),
         value::significant(flow.strain_max, 2)
     );

@@ -58,7 +58,7 @@ fn obstacle(record: &JobRecord, numerics: Option<&JobNumerics>) -> (String, Stri
         Some(Obstacle::Flow { share }) => (
             "flow".to_owned(),
             format!(
-                "the material goes on yielding: the plastic work is {} of what flow and friction dissipate",
+                "the material goes on yielding: the share of plastic work is neither constant nor negligible: {}",
                 significant(*share)
             ),
         ),

@@ -112,7 +112,8 @@ impl YieldLaw {
         let most = excess / (2.0 * modulus);
         let guess =
             rate.map_or(most, |[unit, exponent]| libm::pow(most / unit, 1.0 / exponent).min(excess / limit));
-        let gamma = gamma_of(root(&remaining, excess, guess, TOLERANCE * distance));
+        let found = root(&remaining, excess, guess, TOLERANCE * distance);
+        let gamma = gamma_of(found);
         let change = after(gamma);
         // What the stress falls by in the step, and what it grew by since the step before.
         let fall_pa = -(deviator(&change) * modulus).dot(&n);
@@ -126,7 +127,9 @@ impl YieldLaw {
         state.rise_pa = self.rise_pa(state.strain);
         let of_undamped = shear_pa * isochoric((undamped + identity).determinant());
         let drop_j_m3 = 0.5 * of_undamped * (before_j - after_j).trace();
-        let growth_pa = ROOT * (state.rise_pa - rise_before_pa) + kinematic_pa * gamma;
+        // With a rate the overstress x changes in the step, too. Over a flow that begins and ends without overstress its part is this.
+        let over = rate.map_or(1.0, |[_, exponent]| 1.0 + found * exponent / (exponent + 1.0));
+        let growth_pa = ROOT * (state.rise_pa - rise_before_pa) * over + kinematic_pa * gamma;
         Some(drop_j_m3 - 0.5 * gamma * (fall_pa + growth_pa))
     }
 }
@@ -156,8 +159,12 @@ fn root(function: &dyn Fn(f64) -> f64, start: f64, guess: f64, tolerance: f64) -
         high *= 2.0;
         at_high = function(high);
     }
-    let (mut last, mut best) = (0, (start.abs(), 0.0));
+    let nearest = if at_high.abs() < start { (at_high.abs(), high) } else { (start, 0.0) };
+    let (mut last, mut best) = (0, nearest);
     for _ in 0..MAX_STEPS {
+        if best.0 <= tolerance {
+            break;
+        }
         let middle = (low * at_high - high * at_low) / (at_high - at_low);
         if !(middle > low && middle < high) {
             break;
@@ -166,9 +173,7 @@ fn root(function: &dyn Fn(f64) -> f64, start: f64, guess: f64, tolerance: f64) -
         if at_middle.abs() < best.0 {
             best = (at_middle.abs(), middle);
         }
-        if best.0 <= tolerance {
-            break;
-        } else if at_middle > 0.0 {
+        if at_middle > 0.0 {
             (low, at_low) = (middle, at_middle);
             if last == 1 {
                 at_high *= 0.5;
