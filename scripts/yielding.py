@@ -120,13 +120,13 @@ def page():
 
     down = [(load, row) for load, law, row in found if row["plastic_state"] == "shaken_down"]
     going_on = sorted({load for load, law, row in found if row["plastic_state"] == "yielding"})
-    in_words = lambda loads: " and ".join(f"{load}" for load in loads) + " N"
+    in_words = lambda loads: " and ".join(f"{load:g}" for load in loads) + " N"
     largest = {name: max(change(load, row, name) for load, row in down) for name in ("mu_star", "frequency_hz")}
     claim = (
         f"At {in_words(sorted({load for load, row in down}))} the edges yield and shake down: next to nothing yields in the limit cycle, and μ\\* is "
         f"within {percent(largest['mu_star'])} and the frequency within {percent(largest['frequency_hz'])} of a linear pin."
     )
-    without = f" At {in_words(going_on)} the pin goes on yielding." if going_on else ""
+    without = f" At {in_words(going_on)} the pin goes on yielding on the finer mesh." if going_on else ""
     # The job that counts as periodic while it yields most.
     steady = [
         (load, law, row)
@@ -138,7 +138,7 @@ def page():
     for load, law, row in steady:
         after = longer[law][-1][load]
         ratchets += (
-            f" At {load} N with the hardening {law} it goes on: that job counts as periodic above, because its cycles repeat within the tolerances, and "
+            f" At {load:g} N {'without hardening' if law == 'none' else 'with hardening: ' + law} it goes on: that job counts as periodic above, because its cycles repeat within the tolerances, and "
             f"its plastic strain grows from {percent(row['plastic_strain_max'], 1)} to {percent(after['plastic_strain_max'], 1)}. The μ\\* of such a job is a mean over its window."
         )
     differ = [
