@@ -105,3 +105,34 @@ pub fn step_at_cfl(definition: &ModelDefinition, cfl: f64) -> TimeStep {
 /// Order ⅔ (to the digits that are shown) of errors that a dispersed front causes. The phase error of the
 /// central difference is cubic in frequency, so a front that has travelled L is smeared over (h²L)^⅓.
 pub const FRONT_ORDER: f64 = 0.667;
+
+/// Rows of a tensor.
+pub type Matrix = [[f64; 3]; 3];
+
+/// The nodes of the pin \[m\].
+pub fn positions(model: &Model) -> Vec<[f64; 3]> {
+    (0..model.mesh().node_count()).map(|node| model.mesh().coordinates_m(node)).collect()
+}
+
+/// The displacements of x → F x.
+pub fn uniform(model: &Model, f: Matrix) -> Vec<f64> {
+    let moved = |x: [f64; 3]| f.map(|row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2]);
+    positions(model)
+        .into_iter()
+        .flat_map(|x| std::array::from_fn::<f64, 3, _>(|c| moved(x)[c] - x[c]))
+        .collect()
+}
+
+/// V P = Σ f ⊗ X of forces on a body of uniform stress.
+pub fn stress_of(model: &Model, force: &[f64]) -> Matrix {
+    let [a, b, c] = model.mesh().size_m();
+    let mut sum = [[0.0; 3]; 3];
+    for (node, x) in positions(model).into_iter().enumerate() {
+        for i in 0..3 {
+            for j in 0..3 {
+                sum[i][j] += force[3 * node + i] * x[j] / (a * b * c);
+            }
+        }
+    }
+    sum
+}

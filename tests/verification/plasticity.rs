@@ -9,7 +9,7 @@
 //! * Taylor's bar: a copper cylinder hits a rigid wall (M. L. Wilkins and M. W. Guinan, J. Appl. Phys. 44, 1973; the case of T. Zhu and S.
 //!   Cescotto, CMAME 120, 1995, and of G. T. Camacho and M. Ortiz, CMAME 142, 1997).
 
-use crate::verification::common::{IDLE, definition};
+use crate::verification::common::{IDLE, Matrix, definition, positions, stress_of, uniform};
 use crate::verification::evidence::Evidence;
 use crate::verification::shapes::distorted;
 use std::f64::consts::FRAC_PI_2;
@@ -32,8 +32,6 @@ const ELEMENTS: [Element; 2] = [Element::Full, Element::Selective];
 const METAL: Material = Material { young_modulus_pa: 7.0e10, poisson_ratio: 0.33, density_kg_m3: 2700.0 };
 const YIELD_PA: f64 = 3.0e8;
 
-type Matrix = [[f64; 3]; 3];
-
 /// Yield stress \[Pa\] over the plastic strain.
 type Yield = fn(f64) -> f64;
 
@@ -53,33 +51,6 @@ fn model(element: Element, plasticity: &Plasticity) -> Model {
         ..definition(mesh, METAL, Vec::new())
     })
     .unwrap()
-}
-
-fn positions(model: &Model) -> Vec<[f64; 3]> {
-    (0..model.mesh().node_count()).map(|node| model.mesh().coordinates_m(node)).collect()
-}
-
-/// The displacements of x → F x.
-fn uniform(model: &Model, f: Matrix) -> Vec<f64> {
-    let moved = |x: [f64; 3]| f.map(|row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2]);
-    positions(model)
-        .into_iter()
-        .flat_map(|x| std::array::from_fn::<f64, 3, _>(|c| moved(x)[c] - x[c]))
-        .collect()
-}
-
-/// V P = Σ f ⊗ X of forces on a body of uniform stress.
-fn stress_of(model: &Model, force: &[f64]) -> Matrix {
-    let [a, b, c] = model.mesh().size_m();
-    let mut sum = [[0.0; 3]; 3];
-    for (node, x) in positions(model).into_iter().enumerate() {
-        for i in 0..3 {
-            for j in 0..3 {
-                sum[i][j] += force[3 * node + i] * x[j] / (a * b * c);
-            }
-        }
-    }
-    sum
 }
 
 /// A body of uniform strain that keeps its past.

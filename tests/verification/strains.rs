@@ -9,7 +9,7 @@
 //! * A block of rubber that is bonded to two plates does not lock with selective elements.
 //! * A cantilever that bends far has the deflection of the elastica (K. E. Bisshopp and D. C. Drucker, Q. Appl. Math. 3, 1945).
 
-use crate::verification::common::{IDLE, advance, definition};
+use crate::verification::common::{IDLE, Matrix, advance, definition, positions, stress_of, uniform};
 use crate::verification::evidence::Evidence;
 use crate::verification::shapes::{distorted, solved};
 use tribosweep_mechanics::analysis::{Unobserved, solve};
@@ -29,8 +29,6 @@ const LAWS: [MaterialLaw; 3] = [MaterialLaw::NeoHookean, MaterialLaw::StVenantKi
 const ELEMENTS: [Element; 2] = [Element::Full, Element::Selective];
 const RUBBER: Material = Material { young_modulus_pa: 3.0e6, poisson_ratio: 0.45, density_kg_m3: 1100.0 };
 
-type Matrix = [[f64; 3]; 3];
-
 fn large(law: MaterialLaw) -> Stiffness {
     Stiffness::Hyperelastic { law, plasticity: Vec::new() }
 }
@@ -44,19 +42,6 @@ fn model(parts: &MeshParts, element: Element, material: Material, law: Option<Ma
         ..definition(mesh, material, Vec::new())
     })
     .unwrap()
-}
-
-fn positions(model: &Model) -> Vec<[f64; 3]> {
-    (0..model.mesh().node_count()).map(|node| model.mesh().coordinates_m(node)).collect()
-}
-
-/// The displacements of x → F x.
-fn uniform(model: &Model, f: Matrix) -> Vec<f64> {
-    let moved = |x: [f64; 3]| f.map(|row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2]);
-    positions(model)
-        .into_iter()
-        .flat_map(|x| std::array::from_fn::<f64, 3, _>(|c| moved(x)[c] - x[c]))
-        .collect()
 }
 
 fn disturbed(model: &Model, size_m: f64, seed: u64) -> Vec<f64> {
@@ -128,18 +113,12 @@ fn stress(material: Material, element: Element, law: MaterialLaw, f: Matrix) -> 
     let model = model(&distorted(), element, material, Some(law));
     let force = model.pin().internal_n(&uniform(&model, f));
     let [a, b, c] = model.mesh().size_m();
-    let mut sum = [[0.0; 3]; 3];
     let mut inside: f64 = 0.0;
     for (node, x) in positions(&model).into_iter().enumerate() {
         let is_inside =
             x[0].abs() < 0.499 * a && x[1].abs() < 0.499 * b && x[2] > 0.001 * c && x[2] < 0.999 * c;
-        for i in 0..3 {
-            for j in 0..3 {
-                sum[i][j] += force[3 * node + i] * x[j] / (a * b * c);
-            }
-            if is_inside {
-                inside = inside.max(force[3 * node + i].abs());
-            }
+        if is_inside {
+            inside = force[3 * node..][..3].iter().fold(inside, |largest, force| largest.max(force.abs()));
         }
     }
     // Forces are sums of some hundred products of stresses and areas. The largest stress of all is λ (J + 1/J) ∂J/∂F, of which parts cancel.
@@ -150,7 +129,7 @@ fn stress(material: Material, element: Element, law: MaterialLaw, f: Matrix) -> 
     let modulus = material.lame_lambda_pa() + 2.0 * material.shear_modulus_pa();
     let part = modulus * (volume + 1.0 / volume) * size * size * a * b;
     assert!(inside < 100.0 * f64::EPSILON * part, "{law:?}, {element:?}: {inside} inside");
-    sum
+    stress_of(&model, &force)
 }
 
 /// The stretch across that leaves no stress across, for stretches of the other axes that follow from it.

@@ -30,7 +30,8 @@ use crate::solver::body::pin::GeneralMesh;
 use crate::spec::Plasticity;
 use fearless_simd::{Simd, f64x8, prelude::*};
 
-/// Numbers that a point keeps: C_p⁻¹ − 1, ε̄, the rise of the yield stress and, with kinematic hardening, B.
+/// Numbers that a point keeps: C_p⁻¹ − 1, ε̄, the rise of the yield stress and, with kinematic hardening, B. The rise follows from ε̄, and is
+/// kept because every step looks at it.
 const ALPHA: usize = 6;
 const RISE: usize = 7;
 const BACK: usize = 8;
