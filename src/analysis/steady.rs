@@ -5,9 +5,9 @@
 //! the limit cycle. Groups repeat if, over the last `cycles` of them, the range of every figure is within
 //! `tolerance`, and its means over the two halves differ by at most `drift_tolerance`. The amplitude of N is
 //! one of the figures: a slowly growing or decaying oscillation is not periodic, however small it is.
+//!
 //! Where a material yields, the share of the plastic work must stand still as well: negligible (shakedown), or the same in both halves
 //! within `tolerance` of itself (`plastic.rs`).
-//! within `tolerance` of itself.
 //!
 //! A rate of growth or decay below `drift_tolerance` over half of the window is not seen: 1.5 1/s in the reference scene.
 //!
