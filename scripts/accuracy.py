@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/accuracy.md and docs/work_precision.svg: how accurate the results of the reference scene are.
+"""Writes docs/evidence/accuracy.md and docs/evidence/work_precision.svg: how accurate the results of the reference scene are.
 
 Converged values of static deflections, and the limits of μ* from which the presets' errors are taken, come from
 scripts/peers/converged.json (scripts/peers/lagrange.py writes it).
@@ -199,7 +199,7 @@ def work_page():
     for study in TIMED:
         runs.sweep(f"studies/{study}.json", "precision.db", ["--threads", "1"])
     printed, jobs, _, folder = pareto(TIMED, "precision.db")
-    shutil.copy(folder / "pareto.svg", runs.ROOT / "docs" / "work_precision.svg")
+    shutil.copy(folder / "pareto.svg", runs.EVIDENCE / "work_precision.svg")
     front = [job for job in jobs if job["on_wall_front"] == "true"]
     front.sort(key=lambda job: float(job["wall_s"]))
     rows = [[job["elements"].replace("x", " × "), f"{1e6 * float(job['time_step_s']):.3f}",
@@ -441,7 +441,7 @@ def main():
     convergence = mesh_page()
     scans = scans_page()
     locking = locking_page()
-    runs.write("accuracy.md", page(evidence, work, early, convergence, scans, locking))
+    runs.write("accuracy", page(evidence, work, early, convergence, scans, locking))
 
 
 def page(evidence, work, early, convergence, scans, locking):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/agreement.md: the program beside an independent solver, and what stopping early changes.
+"""Writes docs/evidence/paper.md: the program beside an independent solver, and what stopping early changes.
 
 The independent numbers below are from a separate throw-away implementation of the same model; they
 are data, everything else in the page is computed.
@@ -147,7 +147,7 @@ def early_stop():
 def main():
     runs.build()
     runs.write(
-        "agreement.md",
+        "agreement",
         "# Agreement with an independent solver\n\n"
         "Written by `scripts/agreement.py`; do not edit. The independent values come from a separate\n"
         "implementation of the same model, which was written before this program and then thrown away. Scene: the reference\n"

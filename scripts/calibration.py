@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Synthetic experiments for `tribosweep calibrate`: is the truth inside the region that the data leave?
 
-    scripts/calibration.py PROGRAM FOLDER [COUNT]   run experiments that docs/calibration.csv lacks, up to COUNT, and write the page
-    scripts/calibration.py                          write docs/calibration_proof.md from docs/calibration.csv
+    scripts/calibration.py PROGRAM FOLDER [COUNT]   run experiments that docs/evidence/calibration.csv lacks, up to COUNT, and write the page
+    scripts/calibration.py                          write docs/evidence/calibration_proof.md from docs/evidence/calibration.csv
     scripts/calibration.py --check                  whether the page is what the numbers say
 
 Each experiment draws a truth, runs it on a finer mesh than the fit uses, adds 2 % of noise to μ* and the frequency at 8 speeds, and lets
@@ -18,9 +18,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import evidence
+
 ROOT = Path(__file__).resolve().parent.parent
-TABLE = ROOT / "docs/calibration.csv"
-PAGE = ROOT / "docs/calibration_proof.md"
+TABLE = ROOT / "docs/evidence/calibration.csv"
+PAGE = ROOT / "docs/evidence/calibration_proof.md"
 
 EXPERIMENTS = 40
 SPEEDS_RPM = [3.5, 5, 7, 10, 14, 20, 28, 40]
@@ -259,7 +261,7 @@ def page(all_rows):
         "",
         "Written by `scripts/calibration.py` from [calibration.csv](calibration.csv), which the same script fills from runs; do not edit.",
         "",
-        f"[`calibrate`](calibrate.md) was given {len(all_rows)} synthetic experiments. **The truth was inside the region in {len(inside)} of them**.",
+        f"[`calibrate`](../calibrate.md) was given {len(all_rows)} synthetic experiments. **The truth was inside the region in {len(inside)} of them**.",
         "",
         f"Each experiment draws a truth from the ranges below, runs it at {len(SPEEDS_RPM)} speeds on {' × '.join(map(str, TRUE))} elements, and adds normal noise",
         f"of {100 * NOISE:.0f} % to μ\\* and to the frequency. The fit has {' × '.join(map(str, FIT))} elements, no discrepancy, and the usual settings. The scene is that of the paper with a clamp of",
@@ -320,11 +322,11 @@ def page(all_rows):
 def main():
     arguments = sys.argv[1:]
     if arguments[:1] == ["--check"] or not arguments:
-        text = page(rows())
+        text = evidence.with_part("calibration_proof", page(rows()))[1]
         if not arguments:
             PAGE.write_text(text)
         elif PAGE.read_text() != text:
-            sys.exit("docs/calibration_proof.md is not what docs/calibration.csv says: run scripts/calibration.py")
+            sys.exit("docs/evidence/calibration_proof.md is not what docs/evidence/calibration.csv says: run scripts/calibration.py")
         return
     program, folder = str(Path(arguments[0]).resolve()), Path(arguments[1])
     count = int(arguments[2]) if len(arguments) > 2 else EXPERIMENTS
@@ -339,7 +341,8 @@ def main():
         print(row, flush=True)
         known.append(row)
         write(known)
-    PAGE.write_text(page(rows()))
+    evidence.stamp("calibration_proof")
+    PAGE.write_text(evidence.with_part("calibration_proof", page(rows()))[1])
 
 
 if __name__ == "__main__":

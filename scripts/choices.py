@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/choices.md and docs/figure7_bands.svg: what the paper leaves open, and what it changes.
+"""Writes docs/evidence/choices.md and docs/evidence/figure7_bands.svg: what the paper leaves open, and what it changes.
 
 Runs studies/figure7.json and the studies open_*.json, one for each choice; `inspect` of the reference job with each choice;
 scenes within 20 % of the paper's that have its frequency; and meshes and time steps without damping. Only the claims and the
@@ -335,14 +335,14 @@ def main():
     rows = {study: runs.sweep(f"studies/{study}.json") for study in ["figure7", *OPEN]}
     folder = runs.WORK / "choices" / "report"
     runs.tribosweep("report", "figure7", *OPEN, "--span", "--out", str(folder))
-    shutil.copy(folder / "span.svg", runs.ROOT / "docs" / "figure7_bands.svg")
+    shutil.copy(folder / "span.svg", runs.EVIDENCE / "figure7_bands.svg")
     band_table, widths = bands(rows)
     widest = max(widths.items(), key=lambda item: (item[1][1][0] - item[1][0][0]) / item[0][1])
     claim_table, best, met, choices = claims_by_choices(at_all_speeds(rows))
     search_table, found = searched()
     (omega, mu), (low, high) = widest
     best_words = " and ".join(f"“{words}”" for words in best)
-    runs.write("choices.md", f"""# What the paper leaves open
+    runs.write("choices", f"""# What the paper leaves open
 
 Written by `scripts/choices.py`; do not edit. The paper (Baillet, d'Errico, Berthier, *Influence of sliding contact local dynamics
 on macroscopic friction coefficient variation*, Revue européenne des éléments finis 14 (2005) 305–321) does not say everything that
@@ -381,7 +381,7 @@ Without damping even jobs at μ = 0.1 keep vibrating: {undamped.growing_at(0.1, 
 ## The paper's statements by choices
 
 At μ = 0.4 and all speeds of `figure7`; values of single nodes at 7 rpm. Node 1 is taken 1.5 mm behind the front edge
-([reproduction.md](reproduction.md) says why). Bold: what the paper says; –: not run. The minimum is that of the means, also of runs that are not periodic.
+([paper.md](paper.md) says why). Bold: what the paper says; –: not run. The minimum is that of the means, also of runs that are not periodic.
 
 {claim_table}
 The most, {met}, are met by {best_words}. One choice is changed at a time: combinations were not run, and may meet more.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/cost.md: what `validate` says before a run, and how long the run then takes.
+"""Writes docs/evidence/speed.md: what `validate` says before a run, and how long the run then takes.
 
 With names of studies as arguments, only these are measured.
 """
@@ -106,7 +106,7 @@ def main():
     # No path of this machine.
     large = large.replace(f"{runs.WORK}/", "")
     runs.write(
-        "cost.md",
+        "cost",
         "# What a study takes, predicted and measured\n\n"
         f"Written by `scripts/cost.py`; do not edit. Machine: {os.cpu_count()} cores. It is shared with others, and its speed\n"
         "varies.\n\n"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/eigenvalues.md: how accurate the eigenvalues of steady sliding are, where they decide, and what they save.
+"""Writes docs/evidence/eigenvalues.md: how accurate the eigenvalues of steady sliding are, where they decide, and what they save.
 
     scripts/eigenvalues.py [--part convergence|coexistence|economy]... [--program FILE]
     scripts/eigenvalues.py --page
@@ -345,7 +345,7 @@ def page():
         print(f"no page yet: {', '.join(missing)} not measured")
         return
     found = {part: json.loads(stored(part).read_text()) for part in PARTS}
-    runs.write("eigenvalues.md", PAGE.format(
+    runs.write("eigenvalues", PAGE.format(
         **convergence_tables(found["convergence"]), **coexistence_tables(found["coexistence"]),
         **economy_tables(found["economy"]), cores=os.cpu_count(), frictions=f"{FRICTIONS[0]} … {FRICTIONS[-1]}",
         peer_ns=1e9 * PEER_BETA_R_S,
@@ -373,7 +373,7 @@ until its sign is clear, and a job with a mode that clearly grows is simulated w
 The basis has the modes of the pin up to a frequency, its *band*, and near the end of the band it has them badly. So modes are
 judged one by one up to 85 % of the band. A job is decided only if more than that is known [above it](#what-is-known-above-the-band).
 
-A job that [starts from a coarser mesh](solving.md#a-start-from-a-coarser-mesh) is judged after its run there, and only if that run
+A job that [starts from a coarser mesh](../solving.md#a-start-from-a-coarser-mesh) is judged after its run there, and only if that run
 found no limit cycle.
 
 ## What is known above the band
@@ -399,7 +399,7 @@ before the bound lies in the band. So it helps strongly damped pins with little 
 mesh, or a budget of windows: 50 000 over the number of unknowns, at most 120. A cylinder of 12 mm with 4500 unknowns is searched up to
 some 70 kHz, and its mode at 41 kHz is found. An elastic disk is searched in its band only.
 
-[verdicts.md](verdicts.md) has random pins of all shapes, clamps, laws and dampings: what eigenvalues say beside the end of a run.
+[eigenvalues.md](eigenvalues.md) has random pins of all shapes, clamps, laws and dampings: what eigenvalues say beside the end of a run.
 
 All other jobs are simulated. So eigenvalues never say that a job is periodic, and they give no limit cycle. `tribosweep stability`
 prints all growth rates, without this distance.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/elastic_disk.md: what the elastic disk changes, and how far its figures are converged.
+"""Writes docs/evidence/elastic_disk.md: what the elastic disk changes, and how far its figures are converged.
 
 Runs studies/figure7.json and studies/figure7-elastic.json, and smaller studies at 12 rpm that vary the disk's
 stiffness, its mesh, its surface and its clock. Every number in the page is computed.
@@ -179,7 +179,7 @@ def main():
 
 Written by `scripts/elastic_disk.py`; do not edit. The paper's disk is a steel ring (radii 70 and 120 mm, 85 mm thick) that
 turns under the pin; `figure7` treats it as rigid. This page shows what changes if it is elastic
-(`"disk": {{"kind": "elastic"}}`), and how far the results are converged. [design.md](design.md) describes the solver, [verification.md](verification.md) its verification.
+(`"disk": {{"kind": "elastic"}}`), and how far the results are converged. [design.md](../developers/design.md) describes the solver, [verification.md](verification.md) its verification.
 
 {column()}
 {stiffness()}
@@ -195,7 +195,7 @@ turns under the pin; `figure7` treats it as rigid. This page shows what changes 
 * **Damping** is the pin's β_R in both bodies. Steel is damped less.
 * **β₂** can only be ½ with an elastic disk.
 """
-    runs.write("elastic_disk.md", text)
+    runs.write("elastic_disk", text)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/growing.md: what plans that learn find, and what they save.
+"""Writes docs/evidence/growing.md: what plans that learn find, and what they save.
 
     scripts/growing.py
 
@@ -185,7 +185,7 @@ def main():
     text = f"""# What plans that learn find
 
 Written by `scripts/growing.py`; do not edit. Reference scene on 12 × 15 × 10 elements, β_R = 27.5 ns unless another one is named.
-[points.md](points.md#plans-that-learn) says how such studies are written.
+[points.md](../points.md#plans-that-learn) says how such studies are written.
 
 ## Where squeal begins, and where the curve turns
 
@@ -236,7 +236,7 @@ The variance of μ\\* is explained by {words(fast_ranked, fast_first)}.
 
 These shares belong to these ranges: the width of a clamp is seldom known, and it is varied most. So {NAMES[slow_ranked[0]]} is to be measured best at 7 rpm, then {NAMES[slow_ranked[1]]}; at 20 rpm {NAMES[fast_ranked[0]]}, then {NAMES[fast_ranked[1]]}.
 """
-    runs.write("growing.md", text)
+    runs.write("growing", text)
 
 
 if __name__ == "__main__":

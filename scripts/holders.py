@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/holders.md: random scenes with holders, each result beside a run ten times as long.
+"""Writes docs/evidence/scenes.md: random scenes with holders, each result beside a run ten times as long.
 
     scripts/holders.py [--scenes N] [--seed S] [--program PATH] [--threads N]
 
@@ -171,7 +171,7 @@ With Coulomb's law {above_mu} have a μ\\* above μ.
     if given.dry_run:
         print(text)
     else:
-        runs.write("holders.md", text)
+        runs.write("holders", text)
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """How far results are from the limit of fine meshes on many scenes, and what the run on the coarser mesh says of that.
 
-`run` solves the scenes on several meshes and keeps the results in docs/mesh_errors.csv. It takes hours, so it is not a part of other
+`run` solves the scenes on several meshes and keeps the results in docs/evidence/mesh_errors.csv. It takes hours, so it is not a part of other
 runs. `run LEVEL ... --scenes NAME ...` adds some of them; the level `draft` has the mesh 1 with the settings of that preset, and the
 level `1%` asks for an accuracy.
 
-Without arguments it writes docs/mesh_errors.md and src/study/presets.json from the kept results. `--check` says whether they are up to
+Without arguments it writes docs/evidence/mesh_errors.md and src/study/presets.json from the kept results. `--check` says whether they are up to
 date.
 """
 
@@ -92,8 +92,8 @@ DRAWN = FIRST_DRAW + SECOND_CHOSEN
 EARLIER_SHARES = [0.023, 0.03]
 STEADY = ("periodic", "decayed")
 FIGURE7 = "figure7"
-DATA = runs.ROOT / "docs/mesh_errors.csv"
-MODES = runs.ROOT / "docs/mode_errors.csv"
+DATA = runs.ROOT / "docs/evidence/mesh_errors.csv"
+MODES = runs.ROOT / "docs/evidence/mode_errors.csv"
 COLUMNS = ["scene", "level", "omega_rpm", "mu", "mu_static", "elements_x", "elements_y", "elements_z", "status", "regime", "mu_star",
            "mu_star_se", "frequency_hz", "stick_share", "slip_share", "separated_share", "decided_by", "time_step_s", "steps",
            "start_simulated_s", "wall_s", "mesh_elements_x", "mesh_elements_y", "mesh_elements_z", "mu_star_mesh_error", "accuracy_reached", "mesh_error_unknown"]
@@ -787,9 +787,10 @@ def main():
     given = arguments.parse_args()
     if given.command:
         {"run": run, "modes": run_modes}[given.command](given.levels, given.scenes)
+        runs.evidence.stamp("mesh_errors")
         return
     rows = read()
-    written = {"docs/mesh_errors.md": page(rows),
+    written = {"docs/evidence/mesh_errors.md": runs.evidence.with_part("mesh_errors", page(rows))[1],
                "src/study/presets.json": json.dumps(evidence(jobs_of(rows, [own["name"] for own in SCENES])), indent=2, ensure_ascii=False) + "\n"}
     for name, text in written.items():
         path = runs.ROOT / name

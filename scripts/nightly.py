@@ -16,7 +16,7 @@ from pathlib import Path
 REFERENCE = Path(__file__).resolve().parent / "nightly_reference.csv"
 
 # Double precision from rest. The moment at which a run is found periodic and stops may differ although the physics is the same.
-# docs/accuracy.md ("What stopping early changes") has what this changes with the study's own detection settings. These are the largest
+# docs/evidence/accuracy.md ("What stopping early changes") has what this changes with the study's own detection settings. These are the largest
 # changes there, over all meshes and steps. The step follows from mesh and material by the eigenvalues of small matrices: only
 # rounding may change it. Each figure has its tolerance, and whether it is relative to the reference.
 MINI = {

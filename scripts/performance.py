@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/performance.md: how long figure7 takes on this machine and where the time goes.
+"""Writes docs/evidence/speed.md: how long figure7 takes on this machine and where the time goes.
 
 The profile needs Linux's `perf` (Debian: linux-perf); without it that section says so.
 """
@@ -191,7 +191,7 @@ def main():
     steps = sum(row["steps"] for row in rows)
     busy = sum(row["wall_s"] for row in rows)
     runs.write(
-        "performance.md",
+        "performance",
         "# How fast it is, and how fast it could be\n\n"
         "Written by `scripts/performance.py`; do not edit. "
         f"Machine: {cpu()}, {os.cpu_count()} cores, {platform.system()}. It is shared with others: its speed varies by tens of\n"
@@ -227,7 +227,7 @@ def main():
         f"The same sweep in different ways, on two threads: medians of {ROUNDS} runs in alternating order. Changes are those from\n"
         "the first way, over all jobs. In two alternating pairs, commit b0d2689 took 256 and 238 s, and the presets 78 and 77 s.\n\n"
         + ways
-        + "\nTwo jobs change by more than 0.3 %, for reasons that [solving.md](solving.md#a-start-from-a-coarser-mesh) gives: at μ = 0.6 and\n"
+        + "\nTwo jobs change by more than 0.3 %, for reasons that [solving.md](../solving.md#a-start-from-a-coarser-mesh) gives: at μ = 0.6 and\n"
         "50 rpm the period doubles, and at μ = 0.5 and 4 rpm a slow transient ends within the tolerance.\n\n"
         "**The goal was an eighth of the time, and it is not reached.** What is left, in the same sweep:\n\n"
         "* A periodic job simulates 3.9 ms on average: 20 cycles that count, and some 40 of transient. Two motions make the transient\n"

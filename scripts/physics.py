@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/physics.md: every claim of the paper beside what the program computes.
+"""Writes docs/evidence/paper.md: every claim of the paper beside what the program computes.
 
 Runs studies/figure7.json, studies/clamps.json and a scan of the threshold; takes node histories at
 mu = 0.4, 7 rpm. Only the claims and the words of the comparison are written here; every number in the
@@ -265,7 +265,7 @@ def limit_cycles(rows):
 
 At some points two limit cycles, or a limit cycle and stable sliding, exist side by side on one mesh. Which of them a run reaches
 depends on what it starts from. `figure7` has the preset `standard`: {nested} of its {len(rows)} jobs start from the limit cycle of a coarser mesh
-(`"start": "nested"`, [solving.md](solving.md#a-start-from-a-coarser-mesh)), and the others from rest, as all jobs of `clamps` do.
+(`"start": "nested"`, [solving.md](../solving.md#a-start-from-a-coarser-mesh)), and the others from rest, as all jobs of `clamps` do.
 [choices.md](choices.md#figure-7-with-bands) has jobs that start from their neighbours in speed.
 """
 
@@ -294,7 +294,7 @@ def main():
     table, reduction = claims()
     elements = " × ".join(map(str, runs.shipped("figure7")["scene"]["pin"]["elements"]))
     runs.write(
-        "physics.md",
+        "physics",
         "# The paper's claims beside what is computed\n\n"
         "Written by `scripts/physics.py`; do not edit. Paper: Baillet, d'Errico, Berthier, *Influence of sliding contact\n"
         "local dynamics on macroscopic friction coefficient variation*, Revue européenne des éléments finis 14 (2005)\n"
@@ -317,7 +317,7 @@ def main():
         + dissipation()
         + "\n## The top face\n\n"
         + top_face()
-        + "\n[reproduction.md](reproduction.md#the-top-face) has what the paper says of the top, and [choices.md](choices.md) all claims with either.\n"
+        + "\n[paper.md](paper.md#the-top-face) has what the paper says of the top, and [choices.md](choices.md) all claims with either.\n"
         + "\n## Clamps\n\nμ* and frequency at μ = 0.4 for every named clamp, 1 mm wide (`studies/clamps.json`, 12 × 15 × 10 elements; `~` not periodic).\n\n"
         + clamps()
         + "\n"

@@ -100,7 +100,7 @@ for target in "${targets[@]}"; do
     package="$scratch/$name"
     mkdir -p "$package/completions"
     cp "$program" LICENSE-MIT LICENSE-APACHE CHANGELOG.md CITATION.cff "$package"
-    cp docs/install.md "$package/INSTALL.md"
+    cp docs/first_sweep.md "$package/INSTALL.md"
     cp -r docs "$package/book"
     cp -r studies "$package"
     for shell in bash fish zsh; do

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/reproduction.md: compares the figures of the paper with ours, for its reference job, with our pictures.
+"""Writes docs/evidence/paper.md: compares the figures of the paper with ours, for its reference job, with our pictures.
 
 Runs `inspect` at mu = 0.4, 7 rpm of studies/figure7.json, on the mesh of that study and on the draft's, and its overlay
 over the speeds of the paper's Figure 8. What the paper shows and the words of the comparison are written here; every number
@@ -16,7 +16,7 @@ STUDY = str(runs.ROOT / "studies" / "figure7.json")
 # Behind the front edge, where the stress does not grow with the mesh. The paper does not say exactly where its node 1 is.
 INSIDE = "0,-6"
 SPEEDS = [2, 4, 6, 7, 15, 35]
-PICTURES = runs.ROOT / "docs" / "reproduction"
+PICTURES = runs.EVIDENCE / "reproduction"
 # figure3a, the trajectories of all nodes, is left out because it is large; `inspect` draws it.
 SHOWN = ["figure2a", "figure2b", "figure3b", "figure4", "figure5", "wave"]
 UM, US, MM_S, MPA = 1e6, 1e6, 1e3, 1e-6
@@ -223,7 +223,7 @@ def page():
         f"on {elements} elements and a rigid disk. Where the mesh matters, the value on {draft_elements} elements (`--preset draft`)\n"
         "is given as well. Times are those of the pictures: microseconds since the beginning of the time that is shown. The\n"
         "paper's node 1 is at the front of the contact and node 2 at the rear; ours are the centres of the front and the rear\n"
-        "edge. Claims about many jobs are in [physics.md](physics.md). Where numbers are compared, the verdict is computed;\n"
+        "edge. Claims about many jobs are in [paper.md](paper.md). Where numbers are compared, the verdict is computed;\n"
         "pictures are compared by eye.\n\n"
         "**Where is node 1?** At the edge itself the stress grows with refinement, as under the edge of a punch. The nodes 1 to\n"
         f"2 mm behind it, on the middle line, have a largest σ_n of {sigma_range} MPa, a lift of {lift_range} µm and move in y over\n"
@@ -305,7 +305,7 @@ def page():
         f"clamp and {record['mu_star_contact']:.4f} from the contact forces, at a local coefficient of 0.4.\n\n"
 
         "## Figure 7: μ* against the disk's speed\n\n"
-        "The README shows this figure; [physics.md](physics.md) compares it with the paper claim by claim.\n\n"
+        "The README shows this figure; [paper.md](paper.md) compares it with the paper claim by claim.\n\n"
 
         "## Figure 8: stresses at node 1 and the disk's speed\n\n"
         "```sh\ntribosweep inspect studies/figure7.json --overlay omega_rpm=2,4,6,7,15,35 --node front_centre\n```\n\n"
@@ -349,4 +349,4 @@ def before_contact(folder, node):
 
 if __name__ == "__main__":
     runs.build()
-    runs.write("reproduction.md", page())
+    runs.write("reproduction", page())

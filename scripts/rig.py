@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/rig.md: the rig of Allgaier, Gaul, Keiper and Willner, by eigenvalues and in time.
+"""Writes docs/evidence/rig.md: the rig of Allgaier, Gaul, Keiper and Willner, by eigenvalues and in time.
 
 Takes some 15 minutes. The words describe this rig; every number of the program is computed.
 """
@@ -96,7 +96,7 @@ def main():
     bending_rows = [[f"{1000 * mesh[0]:g}", mesh[2], nodes, f"{found[MU][1]:.0f}", f"{found[MU][0]:.0f}"] for mesh, found, nodes in bending]
     locking, _ = squeal(THRESHOLD_MESH, LOCK_IN_MUS, element="incompatible")
     growths = [(mu, locking[mu][0] if locking[mu] else 0.0) for mu in LOCK_IN_MUS]
-    runs.write("rig.md", page(locals()))
+    runs.write("rig", page(locals()))
 
 
 def converged(found):

@@ -9,7 +9,10 @@ import os
 import subprocess
 from pathlib import Path
 
+import evidence
+
 ROOT = Path(__file__).resolve().parent.parent
+EVIDENCE = ROOT / "docs" / "evidence"
 WORK = ROOT / "target" / "docs"
 PROGRAM = ROOT / "target" / "release" / "tribosweep"
 
@@ -77,7 +80,10 @@ def table(header, rows):
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines) + "\n"
 
 
-def write(name, text):
-    path = ROOT / "docs" / name
+def write(part, text):
+    """Puts a part into its page of docs/evidence, with its claims and what it was made with."""
+    evidence.stamp(part)
+    page, text = evidence.with_part(part, text)
+    path = EVIDENCE / f"{page}.md"
     path.write_text(text)
-    print(f"written: {path.relative_to(ROOT)}")
+    print(f"written: {path.relative_to(ROOT)}; now run scripts/evidence.py")

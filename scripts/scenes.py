@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/scenes.md, docs/holder.svg and docs/cylinder.svg: what a holder, another friction law, a crowned base and a cylindrical pin change of the reference scene.
+"""Writes docs/evidence/scenes.md, docs/evidence/holder.svg and docs/evidence/cylinder.svg: what a holder, another friction law, a crowned base and a cylindrical pin change of the reference scene.
 
 Runs studies/holder.json, studies/friction_laws.json, studies/crown.json and studies/cylinder.json, and the reference scene with an ideal clamp. The
 words describe what these studies are; every number in the page is computed.
@@ -41,7 +41,7 @@ def figure(study, x, by, **settings):
     path = str(runs.ROOT / "studies" / f"{study}.json")
     runs.tribosweep("run", path, *runs.set_arguments(settings), "--name", f"{study}-figure", "--out", str(out))
     runs.tribosweep("report", f"{study}-figure", "--x", x, "--by", by, "--out", str(out))
-    shutil.copy(out / "mu_star.svg", runs.ROOT / "docs" / f"{study}.svg")
+    shutil.copy(out / "mu_star.svg", runs.EVIDENCE / f"{study}.svg")
 
 
 def main():
@@ -106,7 +106,7 @@ def main():
     figure("holder", "holder_stiffness_y_n_m", "holder_mass_kg", omega_rpm=7)
     figure("cylinder", "diameter_m", "omega_rpm")
     runs.write(
-        "scenes.md",
+        "scenes",
         "# Holder, friction law and base\n\n"
         "Written by `scripts/scenes.py`; do not edit. Solved by the studies `studies/holder.json`, `studies/friction_laws.json`,\n"
         "`studies/crown.json` and `studies/cylinder.json`, all on coarse meshes (the first three on that of the preset `draft`). So the numbers\n"

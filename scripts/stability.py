@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/stability.md: ten thousand hostile scenes, time steps above the limit, very long runs, fuzzing.
+"""Writes docs/evidence/stability.md: ten thousand hostile scenes, time steps above the limit, very long runs, fuzzing.
 
     scripts/stability.py [--cases N] [--seed S]
 
@@ -158,7 +158,7 @@ def main():
         f"TRIBOSWEEP_STRESS_SEED={arguments.seed} TRIBOSWEEP_STRESS_ONLY=4711 \\\n"
         "    cargo test --release --test mechanics every_case -- --nocapture"
     )
-    runs.write("stability.md", PAGE.format(
+    runs.write("stability", PAGE.format(
         total=total, seed=arguments.seed, cases=cases, beyond=beyond_section(), long=long_section(), fuzz=fuzz_section(),
         repeat=repeat,
         verdict="All of it passed." if good else "**Something failed: see the tables and the output of the test.**",
@@ -226,7 +226,7 @@ the same after they were stored and read back.
 * Scenes are small (at most 125 nodes) and short (at most 150 000 node-steps); meshes of thousands of nodes are only in the
   other pages. Long runs are of 8 and 27 nodes.
 * A closed energy balance shows that the program follows the scheme. It does not show that the mesh or the time step resolves
-  the physics: see [agreement.md](agreement.md) and [physics.md](physics.md). For μ > 1 the continuous problem itself may be ill-posed.
+  the physics: see [paper.md](paper.md) and [paper.md](paper.md). For μ > 1 the continuous problem itself may be ill-posed.
 * β₂ > ½ with contact: no bound of the energy is proved, it is only measured (above).
 * A run that ends before the first audit after its start (16 steps) has no energies in its record.
 * The guard stops a run only after a growth that it can see. From rounding, a mode at 1.02 of the limit takes up to a few

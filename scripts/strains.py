@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/large_strains.md: where large strains matter for a rubber pin.
+"""Writes docs/evidence/strains.md: where large strains matter for a rubber pin.
 
 The pin is computed with small and with finite strains over the load. The speed is in proportion to the load, so that all loads have one
 result with small strains. Every number in the page is computed.
@@ -95,7 +95,7 @@ Written by `scripts/strains.py`; do not edit. It runs {len(LOADS) * len(FORMS) *
 **A pin of rubber squeals {change(fine, LOADS[0], "frequency_hz"):.1%} higher than the linear model says at {strain[LOADS[0]]:.1%} of mean strain, and {change(fine, top, "frequency_hz"):.1%} higher at {strain[top]:.1%}. {ends}**
 
 The pin is a block of {SIDE_M * 1e3:g} × {SIDE_M * 1e3:g} × 8 mm of rubber of 60 Shore A (E = {MODULUS_PA / 1e6:g} MPa, ν = 0.49, 1100 kg/m³, loss factor 0.05 at 2 kHz), clamped along a quarter of its top, with μ = 0.4 and
-selective elements. The speed is in proportion to the load, 1 rpm per newton. With small strains the equations then have one solution for all loads ([studies.md](studies.md#warnings)), and the columns `small` show it. What the other columns have beside it is due to large strains.
+selective elements. The speed is in proportion to the load, 1 rpm per newton. With small strains the equations then have one solution for all loads ([studies.md](../study.md#warnings)), and the columns `small` show it. What the other columns have beside it is due to large strains.
 
 {elements[1]} elements:
 
@@ -112,7 +112,7 @@ The two meshes differ by {abs(coarse[0][LOADS[0]]["frequency_hz"] / fine[0][LOAD
 
 def main():
     runs.build()
-    runs.write("large_strains.md", page())
+    runs.write("large_strains", page())
 
 
 if __name__ == "__main__":

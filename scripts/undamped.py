@@ -1,4 +1,4 @@
-"""The part of docs/choices.md about beta_R -> 0: meshes, time steps, short waves and modes without damping."""
+"""The part of docs/evidence/choices.md about beta_R -> 0: meshes, time steps, short waves and modes without damping."""
 
 import cmath
 import csv

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/verdicts.md: what the eigenvalues say about random pins, beside the end of a run of each.
+"""Writes docs/evidence/eigenvalues.md: what the eigenvalues say about random pins, beside the end of a run of each.
 
     scripts/verdicts.py [--pins N] [--seed N] [--program FILE]
 
@@ -195,7 +195,7 @@ def page(pins, seed, counts, known, kinds, differences):
     unexplained = sum("not explained" in line[-1] for line in differences)
     header = ["pin", "shape", "clamp", "law", "β_R", "eigenvalues", "run", "why"]
     listed = runs.table(header, differences) if differences else "There is none.\n"
-    runs.write("verdicts.md", PAGE.format(
+    runs.write("verdicts", PAGE.format(
         pins=pins, seed=seed, limit_ms=round(1000 * LIMIT_S), table=table, drawn=drawn, above=above,
         differences=len(differences), listed=listed, unexplained=unexplained))
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/verification.md, docs/verification_cases.csv and docs/verification_rows.csv: runs the whole verification suite
+"""Writes docs/evidence/verification.md, docs/evidence/verification_cases.csv and docs/evidence/verification_rows.csv: runs the whole verification suite
 and tabulates the evidence that it leaves."""
 
 import collections
@@ -60,7 +60,7 @@ NOT_VERIFIED = """\
 * **The patch test of non-matching meshes** is failed, as it is by any one-pass node-to-surface contact: nodal forces are
   off by up to a fifth beside the interface, whatever the mesh; the displacements converge.
 * **The limit cycle itself** has no exact answer. Its balance laws are checked here, its agreement with an independent
-  solver in [agreement.md](agreement.md), its dependence on mesh and step in [accuracy.md](accuracy.md).
+  solver in [paper.md](paper.md), its dependence on mesh and step in [accuracy.md](accuracy.md).
 * **The singular stress at the edges of the base**: no exact answer is asserted for a fixed mesh, and it does not
   converge with the mesh.
 """
@@ -113,7 +113,7 @@ def summary(cases):
 
 def write_cases(cases):
     """A line for each case."""
-    with open(runs.ROOT / "docs" / "verification_cases.csv", "w", newline="") as file:
+    with open(runs.EVIDENCE / "verification_cases.csv", "w", newline="") as file:
         lines = csv.writer(file, lineterminator="\n")
         lines.writerow(["benchmark", "quantity", "criterion", "source", "rows", "error", "observed_order"])
         for benchmark, case in cases:
@@ -123,7 +123,7 @@ def write_cases(cases):
 
 def write_rows(cases):
     """A line for each resolution of each case."""
-    with open(runs.ROOT / "docs" / "verification_rows.csv", "w", newline="") as file:
+    with open(runs.EVIDENCE / "verification_rows.csv", "w", newline="") as file:
         lines = csv.writer(file, lineterminator="\n")
         lines.writerow(["benchmark", "quantity", "resolution", "found", "exact", "error", "bound"])
         for benchmark, case in cases:
@@ -164,7 +164,7 @@ def main():
     write_cases(cases)
     write_rows(cases)
     runs.write(
-        "verification.md",
+        "verification",
         "# Verification against exact answers\n\n"
         "Written by `scripts/verification.py`; do not edit. It runs `cargo test --release --test mechanics --\n"
         "--include-ignored verification::`; every case below is asserted there, under one of the criteria that\n"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/yielding_pin.md: does an aluminium pin whose edges yield shake down, and does that change μ*?
+"""Writes docs/evidence/strains.md: does an aluminium pin whose edges yield shake down, and does that change μ*?
 
 The speed is in proportion to the load, so that all loads have one result with small strains and without yielding. Every number in the
 page is computed.
@@ -179,7 +179,7 @@ A sharp edge has an infinite elastic stress, so the plastic strain there grows a
 
 def main():
     runs.build()
-    runs.write("yielding_pin.md", page())
+    runs.write("yielding_pin", page())
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ use std::path::Path;
 const ROOTS: [&str; 8] = [".ci", "benches", "docs", "migrations", "scripts", "src", "studies", "tests"];
 
 /// The documents about the sources, which name modules.
-const ABOUT_SOURCES: [&str; 2] = ["ARCHITECTURE.md", "docs/design.md"];
+const ABOUT_SOURCES: [&str; 2] = ["ARCHITECTURE.md", "docs/developers/design.md"];
 
 fn exists(path: &str) -> bool {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path).exists()
@@ -130,7 +130,7 @@ fn paths_in_documents_exist() {
         }
     }
     for known in
-        ["studies/mini.json", "scripts/postgres.sh", ".ci/run", "tests/verification", "docs/nightly.md"]
+        ["studies/mini.json", "scripts/postgres.sh", ".ci/run", "tests/verification", "docs/developers/nightly.md"]
     {
         assert!(found.contains(known), "{known} is not found");
     }
@@ -256,37 +256,11 @@ fn the_book_has_every_page() {
     assert_eq!(named.len(), pages.len(), "a page is named twice");
 }
 
-/// Protects: the words that support a claim stand in the page that the claim names, and its number stands in the words.
-#[test]
-fn evidence_is_in_its_pages() {
-    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let table = read("docs/evidence.md");
-    let rows = table.lines().filter(|line| line.starts_with("| ") && line.contains("]("));
-    let mut count = 0;
-    for row in rows {
-        // A bar inside of a cell is escaped.
-        let row = row.replace("\\|", "\u{1}");
-        let cells: Vec<&str> = row.trim_matches('|').split('|').collect();
-        let [claim, number, found, link] = cells[..] else { panic!("{row}") };
-        let (page, _) = links("docs/evidence.md", link).remove(0);
-        let found = words(&found.replace('\u{1}', "|"));
-        assert!(words(&read(&page)).contains(&found), "{claim}: {page} does not say “{found}”");
-        let numbers =
-            number.split(|c: char| !(c.is_ascii_digit() || c == '.')).map(|word| word.trim_matches('.'));
-        for own in numbers.filter(|word| !word.is_empty()) {
-            let is_there = found.split(|c: char| !(c.is_ascii_digit() || c == '.')).any(|word| word == own);
-            assert!(is_there, "{claim}: {own} is not in “{found}”");
-        }
-        count += 1;
-    }
-    assert!(count >= 10, "{count} claims");
-}
-
 /// Protects: the README fits on a page.
 #[test]
 fn the_readme_is_short() {
     let count = read("README.md").split_whitespace().count();
-    assert!(count <= 700, "{count} words");
+    assert!(count <= 600, "{count} words");
 }
 
 /// Protects: the example in the README is that of the page about Python, which the tests run.

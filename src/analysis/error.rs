@@ -74,7 +74,7 @@ pub enum JobError {
 /// Largest share of a slip speed by which friction may change it in a step at a node with the mean normal force: μ′ N Δt over the node's
 /// mass. The law takes the speed of the step before, so that a node with a share of 2 or more goes from stick to slip in every step,
 /// and nodes where the pressure has a peak carry several times the mean force. Beyond this share μ\* depends on the time step
-/// (docs/scene.md).
+/// (docs/developers/design.md).
 const LARGEST_SHARE: f64 = 0.5;
 
 /// Checks the time step of a job: number of steps of its run.

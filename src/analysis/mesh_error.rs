@@ -3,7 +3,7 @@
 //! A result f on elements of the size h and the result c of the coarser mesh, whose elements are r times as large, have the errors e h^p
 //! and e (r h)^p if the error is of order p. Then f is off by (f − c)/(r^p − 1). Contact that opens, closes and sticks leaves no clean
 //! order: some differences are small by chance. So the bound takes p = 1 and adds a share of the value that falls with the mesh. Its
-//! numbers are those that cover the errors of many scenes (docs/mesh_errors.md).
+//! numbers are those that cover the errors of many scenes (docs/evidence/mesh_errors.md).
 
 use super::mode::ComplexMode;
 use super::outcome::Outcome;
@@ -12,7 +12,7 @@ use crate::spec::Accuracy;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// What the mesh adds to the uncertainty of a result. The bounds are chosen to hold for 95 % of jobs (docs/mesh_errors.md).
+/// What the mesh adds to the uncertainty of a result. The bounds are chosen to hold for 95 % of jobs (docs/evidence/mesh_errors.md).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MeshError {
     /// Bound of the absolute error of μ\*.

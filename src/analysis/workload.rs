@@ -40,17 +40,17 @@ pub struct Workload {
 }
 
 /// Time of a stage of a node of the disk, relative to the time of a step of a node of the pin: its rows of K are general
-/// ones. docs/elastic_disk.md has the times.
+/// ones. docs/evidence/elastic_disk.md has the times.
 const DISK_STAGE: f64 = 5.0;
 
 /// Time of a step of a node in single precision, relative to double precision, and the memory of a lane's fields.
-/// docs/performance.md has the times.
+/// docs/evidence/speed.md has the times.
 const SINGLE: [f64; 2] = [0.6, 0.5];
 
-/// Time of a step of a node of a general mesh, relative to that of a block: measured on 9828 nodes (docs/scene.md).
+/// Time of a step of a node of a general mesh, relative to that of a block: measured on 9828 nodes (docs/developers/design.md).
 const GENERAL_TIME: f64 = 3.0;
 
-/// Time of a step with large strains, relative to that of a general mesh with small ones: 4.5 on 10051 nodes and 4.7 on 567 (docs/design.md).
+/// Time of a step with large strains, relative to that of a general mesh with small ones: 4.5 on 10051 nodes and 4.7 on 567 (docs/developers/design.md).
 const LARGE_STRAINS_TIME: f64 = 4.6;
 /// The same of a material that may yield, as long as few elements do.
 const YIELDING_TIME: f64 = 7.1;
@@ -221,7 +221,7 @@ impl Workload {
 }
 
 /// Nodes times lanes above which another lane costs more than it saves: the fields that a step reads and
-/// writes then no longer fit into the core's caches. The value is measured; see docs/performance.md.
+/// writes then no longer fit into the core's caches. The value is measured; see docs/evidence/speed.md.
 const NODES_TIMES_LANES: usize = 40_000;
 
 /// The same for general meshes.
@@ -229,7 +229,7 @@ const GENERAL_NODES_TIMES_LANES: usize = 1_600_000;
 
 /// When a job is likely to end, in simulated time \[s\].
 ///
-/// A job ends when its state is periodic or decays, which is not known in advance. In the studies that docs/cost.md lists, the
+/// A job ends when its state is periodic or decays, which is not known in advance. In the studies that docs/evidence/speed.md lists, the
 /// mean over a study's jobs was between `early_s` and `late_s`; single jobs end earlier or at their limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ending {

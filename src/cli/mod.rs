@@ -49,7 +49,7 @@ mod workers;
 use crate::exit;
 use crate::queue::Location;
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use clap::error::{ContextKind, ContextValue};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
 
 /// The database of commands without `--db`.
@@ -75,64 +75,62 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Check a study file and all that a run needs, and say what its jobs take, without running it.
+    Validate(validate::Args),
     /// Submit a study, run its jobs and write a report: the whole sweep in one command.
     Run(run::Args),
+    /// Write the page, tables and figures of a study, or of several side by side.
+    Report(report::Args),
+    /// Compute the modes of steady sliding at every point of a study, and the thresholds at which one begins to grow.
+    Stability(stability::Args),
+    /// Find the values of free parameters that measured points do not rule out.
+    Calibrate(calibrate::Args),
+    /// Show how much each parameter of a study decides, from its own jobs.
+    Sensitivity(sensitivity::Args),
+    /// Compare jobs that differ in their numerics: error against run time.
+    Pareto(pareto::Args),
+    /// Run one job again and show it in detail: histories, cycles, snapshots, fields for ParaView.
+    Inspect(inspect::Args),
+    /// Solve one job in the foreground.
+    Solve(solve::Args),
+    /// Show the progress of the studies.
+    Status(status::Args),
+    /// Write one row per job of one, several or all studies as CSV or JSON lines.
+    Export(export::Args),
+    /// Show everything about a job: its inputs, its whole result, and how the result was obtained.
+    Show(show::Args),
     /// Plan a study's jobs without running them.
     Submit(submit::Args),
     /// Run all pending jobs of the database.
     Work(work::Args),
     /// Write the scripts for a job array of a Slurm cluster, and submit them.
     Slurm(slurm::Args),
-    /// Show the progress of the studies.
-    Status(status::Args),
-    /// Write the page, tables and figures of a study, or of several side by side.
-    Report(report::Args),
-    /// Compare jobs that differ in their numerics: error against run time.
-    Pareto(pareto::Args),
-    /// Show how much each parameter of a study decides, from its own jobs.
-    Sensitivity(sensitivity::Args),
-    /// Find the values of free parameters that measured points do not rule out: waves of jobs, their emulators, and the region that is
-    /// left.
-    Calibrate(calibrate::Args),
-    /// Write one row per job of one, several or all studies as CSV or JSON lines.
-    Export(export::Args),
-    /// Print the columns of the export with their units and meanings.
-    Columns(columns::Args),
-    /// Show everything about a job: its inputs, its whole result, and how the result was obtained.
-    Show(show::Args),
-    /// Make failed and cancelled jobs of a study pending again, or those whose results cannot be read.
-    Retry(retry::Args),
     /// Cancel the pending jobs of a study.
     Cancel(cancel::Args),
+    /// Make failed and cancelled jobs of a study pending again, or those whose results cannot be read.
+    Retry(retry::Args),
+    /// Compare two studies: inputs that differ, and jobs that only one of them has.
+    Diff(diff::Args),
+    /// Give a study another name in the database.
+    Rename(rename::Args),
+    /// Print the file of a study in the database, as it was submitted.
+    Document(document::Args),
     /// Remove a study; its results stay in the database until `gc`.
     Rm(rm::Args),
     /// Delete jobs that no study needs, with their results.
     Gc(gc::Args),
-    /// Give a study another name in the database.
-    Rename(rename::Args),
-    /// Compare two studies: inputs that differ, and jobs that only one of them has.
-    Diff(diff::Args),
-    /// Print the file of a study in the database, as it was submitted.
-    Document(document::Args),
     /// Add the studies and results of other databases, for example shards, to the one that --db names.
     Merge(merge::Args),
     /// Copy one or all studies with their results from one database to another; each is a file or on a server.
     Copy(merge::CopyArgs),
     /// Check the database and its environment for problems.
     Doctor(doctor::Args),
-    /// Solve one job in the foreground.
-    Solve(solve::Args),
-    /// Compute the complex modes of steady sliding at every point of a study, and the thresholds: the values of μ, or of another
-    /// parameter, at which sliding becomes unstable or stable.
-    Stability(stability::Args),
-    /// Run one job again and show it in detail: histories, cycles, snapshots, fields for ParaView.
-    Inspect(inspect::Args),
-    /// Check a study file and all that a run needs, and say what its jobs take, without running it.
-    Validate(validate::Args),
     /// Show the accuracy presets with their settings and measured errors.
     Presets(presets::Args),
     /// Print the parameters that a grid and `--set` know, with units and meanings.
     Parameters(parameters::Args),
+    /// Print the columns of the export with their units and meanings.
+    Columns(columns::Args),
     /// Print the JSON schema of study files.
     Schema(schema::Args),
     /// Print a completion script for a shell.
@@ -144,8 +142,33 @@ enum Command {
 impl Cli {
     /// Reads the arguments of the process. Help, the version and errors end the process.
     pub fn from_arguments() -> Self {
-        Self::try_parse().unwrap_or_else(|error| with_suggestion(error).exit())
+        Self::try_parse().unwrap_or_else(|error| {
+            let is_alone = std::env::args_os().len() <= 1;
+            if is_alone && error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+                output::log(first_steps());
+                std::process::exit(exit::ERROR.into());
+            }
+            with_suggestion(error).exit()
+        })
     }
+}
+
+/// The commands that somebody needs first.
+const FIRST: [&str; 5] = ["validate", "run", "report", "stability", "calibrate"];
+
+/// What the program prints without arguments.
+fn first_steps() -> String {
+    let command = Cli::command();
+    let about = |name: &str| {
+        let own = command.find_subcommand(name).and_then(clap::Command::get_about);
+        format!("  {name:<11}{}\n", own.map(ToString::to_string).unwrap_or_default())
+    };
+    format!(
+        "{}.\n\nUsage: tribosweep COMMAND\n\nThe commands to begin with:\n{}\n\
+         `tribosweep --help` lists all commands, and `tribosweep help COMMAND` describes one.",
+        command.get_about().map(ToString::to_string).unwrap_or_default(),
+        FIRST.map(about).concat()
+    )
 }
 
 /// Most letters to change from a wrong name of a command to the one that is meant: `rnu`, `stauts`.
@@ -175,34 +198,34 @@ pub fn main(cli: Cli) -> u8 {
     // A damaged database may be either of their two.
     let has_two = matches!(cli.command, Command::Merge(_) | Command::Copy(_));
     let result = match cli.command {
+        Command::Validate(args) => validate::run(&args, db),
         Command::Run(args) => run::run(&args, db),
+        Command::Report(args) => report::run(&args, db),
+        Command::Stability(args) => stability::run(&args, db),
+        Command::Calibrate(args) => calibrate::run(&args, db),
+        Command::Sensitivity(args) => sensitivity::run(&args, db),
+        Command::Pareto(args) => pareto::run(&args, db),
+        Command::Inspect(args) => inspect::run(&args, db),
+        Command::Solve(args) => solve::run(&args),
+        Command::Status(args) => status::run(&args, db),
+        Command::Export(args) => export::run(&args, db),
+        Command::Show(args) => show::run(&args, db),
         Command::Submit(args) => submit::run(&args, db),
         Command::Work(args) => work::run(&args, db),
         Command::Slurm(args) => slurm::run(&args, db),
-        Command::Status(args) => status::run(&args, db),
-        Command::Report(args) => report::run(&args, db),
-        Command::Pareto(args) => pareto::run(&args, db),
-        Command::Sensitivity(args) => sensitivity::run(&args, db),
-        Command::Calibrate(args) => calibrate::run(&args, db),
-        Command::Export(args) => export::run(&args, db),
-        Command::Columns(args) => columns::run(&args),
-        Command::Show(args) => show::run(&args, db),
-        Command::Retry(args) => retry::run(&args, db),
         Command::Cancel(args) => cancel::run(&args, db),
+        Command::Retry(args) => retry::run(&args, db),
+        Command::Diff(args) => diff::run(&args, db),
+        Command::Rename(args) => rename::run(&args, db),
+        Command::Document(args) => document::run(&args, db),
         Command::Rm(args) => rm::run(&args, db),
         Command::Gc(args) => gc::run(&args, db),
-        Command::Rename(args) => rename::run(&args, db),
-        Command::Diff(args) => diff::run(&args, db),
-        Command::Document(args) => document::run(&args, db),
         Command::Merge(args) => merge::run(&args, db),
         Command::Copy(args) => merge::copy(&args, db),
         Command::Doctor(args) => doctor::run(&args, db),
-        Command::Solve(args) => solve::run(&args),
-        Command::Stability(args) => stability::run(&args, db),
-        Command::Inspect(args) => inspect::run(&args, db),
-        Command::Validate(args) => validate::run(&args, db),
         Command::Presets(args) => presets::run(&args),
         Command::Parameters(args) => parameters::run(&args),
+        Command::Columns(args) => columns::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Man(args) => man::run(&args),

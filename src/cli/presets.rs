@@ -86,7 +86,7 @@ fn as_text(evidence: &Evidence) -> String {
          tolerance, drift: of the periodic state. asked: the job goes from mesh to mesh, up to that of the table, until its\n\
          own error of μ* is within this share. cost: nodes × steps, standard = 1.\n\n\
          Errors: the median, and what 95 % of limit cycles are within, against the limit of fine meshes in {} scenes\n\
-         (docs/mesh_errors.md). They are not bounds for your scene: each result has its own, as mu_star_mesh_error.\n\
+         (docs/evidence/mesh_errors.md). They are not bounds for your scene: each result has its own, as mu_star_mesh_error.\n\
          Written by {}.\n",
         ways, evidence.scenes, evidence.written_by,
     );

@@ -62,7 +62,7 @@ pub struct Endpoint {
 }
 
 /// Ends whose μ\* differ by less than this share are those of one limit cycle: less than a tenth of the distance of the two limit cycles
-/// at 7 rpm (docs/growing.md), and several times what the detection of a limit cycle leaves open.
+/// at 7 rpm (docs/evidence/growing.md), and several times what the detection of a limit cycle leaves open.
 const SAME_MU_STAR: f64 = 0.003;
 
 /// Likewise for frequencies.

@@ -2,7 +2,7 @@
 //!
 //! Just below the threshold a limit cycle can exist beside stable sliding, and the start of a run decides between them. So
 //! eigenvalues decide only at a distance in μ from the threshold: sliding must be stable at μ and at a larger μ
-//! ([`further_mu`]). The slower the disk, the lower cycles reach: docs/eigenvalues.md has the runs.
+//! ([`further_mu`]). The slower the disk, the lower cycles reach: docs/evidence/eigenvalues.md has the runs.
 //!
 //! Sliding counts as stable at a point if three things hold there:
 //!
@@ -27,7 +27,7 @@ const STEP: f64 = 0.01;
 ///
 /// `speed` is the disk's speed over the pin's natural speed μp/(ρc_s), at which friction drives shear waves as fast as the
 /// disk moves. Cycles were found up to 13 % below the threshold at a speed of 1/20, 5 % at 1/5, and 1 % above 1
-/// (docs/eigenvalues.md). The distance is more than three times as large: 8 % (1 + speed^(−½)), rounded up to a multiple of
+/// (docs/evidence/eigenvalues.md). The distance is more than three times as large: 8 % (1 + speed^(−½)), rounded up to a multiple of
 /// 0.01.
 pub fn further_mu(mu: f64, speed: f64) -> f64 {
     let further = mu * (1.0 + DISTANCE * (1.0 + 1.0 / speed.sqrt()));

@@ -175,9 +175,9 @@ fn a_coarser_mesh_is_there_where_it_is_asked_for() {
     assert_eq!([draft(Start::Nested), draft(Start::Compared)], [None, Some([6, 8, 5])]);
 }
 
-/// The limit cycles of each job of docs/mesh_errors.csv on its meshes, by the multiple of its coarsest one.
+/// The limit cycles of each job of docs/evidence/mesh_errors.csv on its meshes, by the multiple of its coarsest one.
 fn calibration() -> Vec<BTreeMap<usize, Cycle>> {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/mesh_errors.csv");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/evidence/mesh_errors.csv");
     let mut jobs = BTreeMap::<[String; 3], BTreeMap<usize, Cycle>>::new();
     let mut reader = csv::Reader::from_path(file).unwrap_or_else(|error| panic!("{file}: {error}"));
     for row in reader.deserialize::<BTreeMap<String, String>>().map(Result::unwrap) {

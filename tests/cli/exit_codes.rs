@@ -132,7 +132,7 @@ fn an_unknown_study() {
 fn usage() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
     for (arguments, expected) in [
-        ("", "Usage"),
+        ("", "The commands to begin with:\n  validate "),
         ("sweep", "'sweep'"),
         ("run", "<STUDY>"),
         ("run mine.json --threads 0", "'--threads <N>'"),
@@ -147,13 +147,13 @@ fn usage() {
     assert_eq!(folder.files(), ["mine.json"]);
     let help = folder.ok("--help");
     let codes = help.split_once("Exit codes:").expect("the help has the exit codes").1;
-    let page = include_str!("../../docs/commands.md");
+    let page = include_str!("../../docs/long_sweeps.md");
     for code in 0..=3 {
         let line = codes.lines().find_map(|line| line.strip_prefix(&format!("  {code}  ")));
         let meaning = line.unwrap_or_else(|| panic!("{code}: {codes}"));
         assert!(
             page.contains(&format!("| **{code}** | {meaning} |")),
-            "docs/commands.md: {code} is {meaning}"
+            "docs/long_sweeps.md: {code} is {meaning}"
         );
     }
     // Number, and with a repository commit and day.
@@ -246,7 +246,7 @@ fn failed_jobs() {
 #[test]
 fn a_single_job_that_fails() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
-    // One element at the stability limit, where friction excites the highest mode (see docs/stability.md).
+    // One element at the stability limit, where friction excites the highest mode (see docs/evidence/stability.md).
     let at_the_limit = "--set elements=1x1x1 --set size_x_m=0.01 --set size_y_m=0.01 --set poisson_ratio=0.499 --set mu=2 \
         --set clamp_side=trailing_end --set clamp_width_m=0 --set ramp_s=0 --set beta_r_s=0 --set safety_factor=1 \
         --set stop_early=false";

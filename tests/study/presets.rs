@@ -180,9 +180,9 @@ fn the_mesh_fits_every_job() {
     assert_eq!(meshes(r#""nx": [6, 24]"#), [[6, 15, 10], [24, 15, 10]]);
 }
 
-/// The rows of docs/mesh_errors.csv, which `scripts/mesh_errors.py` makes the measured errors from.
+/// The rows of docs/evidence/mesh_errors.csv, which `scripts/mesh_errors.py` makes the measured errors from.
 fn measured_rows() -> Vec<BTreeMap<String, String>> {
-    let mut reader = csv::Reader::from_path("docs/mesh_errors.csv").unwrap();
+    let mut reader = csv::Reader::from_path("docs/evidence/mesh_errors.csv").unwrap();
     reader.deserialize().map(Result::unwrap).collect()
 }
 

@@ -1,4 +1,4 @@
-//! The evidence of a case. It is judged by one of four criteria and written down for `docs/verification.md`.
+//! The evidence of a case. It is judged by one of four criteria and written down for `docs/evidence/verification.md`.
 //!
 //! * **Exact**: the scheme reproduces the answer. The error may only be rounding, and its bound counts
 //!   operations.

@@ -6,7 +6,7 @@
 //! the disk (u_z = 0) and carries a uniform traction of μF/A in y. Its top is tied in z and carries F. The strip of
 //! the clamp, 2 mm wide, is held in x and y. The measure is the base's mean displacement in y. An independent assembly
 //! (`scripts/peers/lagrange.py`) has its converged values, and the same values on these meshes. `scripts/accuracy.py` writes the
-//! table of docs/accuracy.md from both.
+//! table of docs/evidence/accuracy.md from both.
 //! The threshold of the warning in `study::plausibility` follows from this table.
 
 use tribosweep_mechanics::solver::Model;
@@ -100,7 +100,7 @@ fn converged(poisson_ratio: f64) -> serde_json::Value {
     all["deflections"].as_array().unwrap().iter().find(is_wanted).unwrap().clone()
 }
 
-/// Protects: the threshold of the warning about ν near ½, and the numbers of docs/accuracy.md. On each mesh the deflection is that of
+/// Protects: the threshold of the warning about ν near ½, and the numbers of docs/evidence/accuracy.md. On each mesh the deflection is that of
 /// the independent assembly with the same elements: both solve the same equations, so they differ by what the conjugate gradients leave (10⁻⁹ of
 /// the residual, whose effect on a mean displacement is of the same size times the square root of the condition, some 10³). From the
 /// converged value it is 7.6 % and 3.8 % away at ν = 0.3, and half as far again at the threshold.

@@ -69,7 +69,7 @@ fn squeal_of_full_elements() -> [f64; 2] {
 }
 
 /// Protects: the squeal of a rig from the literature. The beam's leading edge touches: two modes lock in and one grows, near the
-/// 2215 Hz that others computed for this rig. The mesh is coarse, so that the frequency is up to 15 % too high; docs/rig.md has its
+/// 2215 Hz that others computed for this rig. The mesh is coarse, so that the frequency is up to 15 % too high; docs/evidence/rig.md has its
 /// convergence. Without friction nothing grows, and nothing grows with a trailing edge, which friction pushes away from the beam.
 #[test]
 fn the_rig_of_allgaier_squeals_with_a_leading_edge() {
@@ -88,7 +88,7 @@ fn the_rig_of_allgaier_squeals_with_a_leading_edge() {
 }
 
 /// Protects: with incompatible elements this coarse mesh has the frequency to which quadratic elements converge, 2273 Hz, within 2 %, where
-/// trilinear ones are more than 8 % too high; and its growth rate is much nearer to theirs, 330 to 410 1/s (docs/rig.md).
+/// trilinear ones are more than 8 % too high; and its growth rate is much nearer to theirs, 330 to 410 1/s (docs/evidence/rig.md).
 #[test]
 fn the_rig_bends_with_incompatible_elements() {
     let [full, incompatible] = [squeal_of_full_elements(), leading(4.0, 0.152, Element::Incompatible)];

@@ -1,5 +1,5 @@
 //! The columns of the export: name, group, meaning, how figures and tables show a column, and how it is read from a job. This is the only
-//! list of them. The header, the cells, titles of axes, digits, `tribosweep columns`, `tribosweep show` and docs/columns.md come from it.
+//! list of them. The header, the cells, titles of axes, digits, `tribosweep columns`, `tribosweep show` and docs/reference.md come from it.
 
 mod fixed;
 mod shown;

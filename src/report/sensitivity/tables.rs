@@ -203,7 +203,7 @@ pub(in crate::report) fn described() -> [FileColumns; 2] {
     [
         FileColumns::new(
             &["sensitivity.csv"],
-            "A line is an [index](commands.md#sensitivity) of a parameter.",
+            "A line is an [index](report.md#which-parameter-decides) of a parameter.",
             &columns(),
         ),
         FileColumns {

@@ -328,7 +328,7 @@ fn locking(field: &str, nu: f64) -> Doubt {
         message: "close to ½, where the elements are too stiff (volumetric locking)".to_owned(),
         help: "measured on the reference pin: on 12 × 15 × 10 elements it deflects 5.9 % too little at ν = 0.3, 9.1 % at \
                0.48 and 13.2 % at 0.499, on 24 × 30 × 20 elements 2.0 %, 3.3 % and 6.0 %; μ* differs by 6 to 10 % between \
-               these meshes at 0.48, by 2 to 4 % at 0.3 (docs/accuracy.md); compare two meshes, or give a pin scene.pin.element = selective"
+               these meshes at 0.48, by 2 to 4 % at 0.3 (docs/evidence/accuracy.md); compare two meshes, or give a pin scene.pin.element = selective"
             .to_owned(),
     }
 }

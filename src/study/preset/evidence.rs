@@ -3,7 +3,7 @@
 use super::settings::Preset;
 use serde::{Deserialize, Serialize};
 
-/// Errors of the presets that have one mesh, over many scenes (docs/mesh_errors.md).
+/// Errors of the presets that have one mesh, over many scenes (docs/evidence/mesh_errors.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Evidence {

@@ -129,7 +129,7 @@ impl Preset {
         &["elements", "safety_factor", "time_step_s", "tolerance", "drift_tolerance", "accuracy_mu_star"];
 
     /// Chooses how a job on a rigid disk is solved, except for the parameters that something else `gives` by name: in the
-    /// way that is fastest for the same errors (docs/performance.md). This is precision `single`, and, on meshes finer than
+    /// way that is fastest for the same errors (docs/evidence/speed.md). This is precision `single`, and, on meshes finer than
     /// the draft's, start `nested` and stability `eigenvalues`.
     ///
     /// A job that single precision does not suit stays in double precision.

@@ -171,7 +171,7 @@ mod tests {
         assert!((high / limit - 1.0).abs() < 1.0e-9, "{high} {limit}");
     }
 
-    /// Protects: docs/cost.md says how wide a forecast is before jobs have finished in the database, and how wide afterwards.
+    /// Protects: docs/evidence/speed.md says how wide a forecast is before jobs have finished in the database, and how wide afterwards.
     #[test]
     fn the_width_is_the_documented_one() {
         let factor = |speed: Speed| {

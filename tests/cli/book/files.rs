@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// stand for names.
 fn documented(page: &str) -> BTreeMap<&str, Vec<&str>> {
     let mut found = BTreeMap::new();
-    for section in page.split("\n## ").skip(1) {
+    for section in page.split("\n### ").skip(1) {
         let rows = section.lines().filter_map(|line| line.strip_prefix("| "));
         let first = rows.filter_map(|row| row.split(" | ").next());
         let names = first.flat_map(|cell| cell.split('`').skip(1).step_by(2));
@@ -67,14 +67,14 @@ pub fn assert_documented<'a>(page: &str, written: impl Iterator<Item = &'a Strin
             unused.get_mut(name).expect("a section").retain(|pattern| !matches(pattern, path));
         }
     }
-    assert!(unknown.is_empty(), "docs/files.md does not have {unknown:?}");
-    assert!(unused.values().all(Vec::is_empty), "no example writes these files of docs/files.md: {unused:?}");
+    assert!(unknown.is_empty(), "docs/reference.md does not have {unknown:?}");
+    assert!(unused.values().all(Vec::is_empty), "no example writes these files of docs/reference.md: {unused:?}");
 }
 
 /// Protects: files are compared with the page as it means them.
 #[test]
 fn patterns_are_matched() {
-    let page = "# Files\n\n## One\n\n| file | content |\n|---|---|\n| `a.svg`, `b/NAME_c.csv` | `d.md` |\n| `e/` | x |\n\n## Two\n";
+    let page = "# Files\n\n### One\n\n| file | content |\n|---|---|\n| `a.svg`, `b/NAME_c.csv` | `d.md` |\n| `e/` | x |\n\n### Two\n";
     assert_eq!(documented(page), [("One", vec!["a.svg", "b/NAME_c.csv"]), ("Two", vec![])].into());
     for (pattern, path, expected) in [
         ("a.svg", "a.svg", true),

@@ -37,12 +37,12 @@ pub fn assert_documented<'a>(
     tables: impl Iterator<Item = (&'a str, &'a str)>,
 ) {
     let [columns, fields] = common;
-    let grid = fields.split("\n## grid\n").nth(1).expect("the page of fields has the parameters");
-    let of_jobs = page.split("\n## ").find(|section| section.starts_with("`jobs.csv`")).expect("a section");
+    let grid = fields.split("\n### grid\n").nth(1).expect("the page of fields has the parameters");
+    let of_jobs = page.split("\n### ").find(|section| section.starts_with("`jobs.csv`")).expect("a section");
     let parameters: BTreeSet<&str> = names(grid).chain(names(of_jobs)).collect();
     let of_export: BTreeSet<&str> = names(columns).collect();
     assert!(of_export.contains("mu_star") && of_export.len() > 150, "{of_export:?}");
-    let mut sections: Vec<Section> = page.split("\n## ").skip(1).map(Section::of).collect();
+    let mut sections: Vec<Section> = page.split("\n### ").skip(1).map(Section::of).collect();
     let mut missing = BTreeSet::new();
     for (path, header) in tables {
         let file = path.rsplit('/').next().unwrap();
@@ -73,8 +73,8 @@ pub fn assert_documented<'a>(
         unknown.retain(|name| !(is_of_export && of_export.contains(name)));
         missing.extend(unknown.iter().map(|name| format!("{file}: {name}")));
     }
-    assert!(missing.is_empty(), "docs/tables.md does not have {missing:?}");
+    assert!(missing.is_empty(), "docs/reference.md does not have {missing:?}");
     let unused = sections.iter().filter(|section| !section.unused.is_empty());
     let unused: Vec<_> = unused.map(|section| (&section.files, &section.unused)).collect();
-    assert!(unused.is_empty(), "no table of the examples has these columns of docs/tables.md: {unused:?}");
+    assert!(unused.is_empty(), "no table of the examples has these columns of docs/reference.md: {unused:?}");
 }

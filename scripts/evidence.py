@@ -1,0 +1,238 @@
+#!/usr/bin/env python3
+"""The pages of docs/evidence: what each of them claims, when its runs were made, and with which version of the solver.
+
+    scripts/evidence.py            write docs/evidence/claims.md and the heads of the pages
+    scripts/evidence.py --check    end with 1 if a claim, a number or a head is not what the pages say
+    scripts/evidence.py --turn [N] run the script of the part whose turn it is today (or the N-th), and end with 1 if a number has changed
+
+A page consists of the parts that scripts write with `runs.write`. The date, the commit and the version of the solver of each part are in
+docs/evidence/stamps.json. Claims take their numbers from the pages, so a new run of a script changes them.
+Needs only Python's standard library; `--turn` builds the program.
+"""
+
+import datetime
+import difflib
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+FOLDER = ROOT / "docs" / "evidence"
+STAMPS = FOLDER / "stamps.json"
+
+# The parts of each page. A page of one part has its title; a page of several has a title of its own.
+PAGES = {
+    "verification": ("", ["verification"]),
+    "paper": ("The paper: its claims, its figures, and an independent solver", ["physics", "reproduction", "agreement"]),
+    "choices": ("", ["choices"]),
+    "accuracy": ("", ["accuracy"]),
+    "mesh_errors": ("", ["mesh_errors"]),
+    "eigenvalues": ("Eigenvalues of steady sliding", ["eigenvalues", "verdicts"]),
+    "stability": ("", ["stability"]),
+    "elastic_disk": ("", ["elastic_disk"]),
+    "scenes": ("Holder, friction law, base and diameter", ["scenes", "holders"]),
+    "strains": ("Large strains and yielding", ["large_strains", "yielding_pin"]),
+    "rig": ("", ["rig"]),
+    "growing": ("", ["growing"]),
+    "calibration_proof": ("", ["calibration_proof"]),
+    "speed": ("Speed and forecasts", ["performance", "cost"]),
+}
+PAGE_OF = {part: page for page, (_, parts) in PAGES.items() for part in parts}
+
+# The part, what it claims, and the words of the part that have the numbers. White space counts as one blank.
+CLAIMS = [
+    ("verification", "The solver agrees with exact answers in {1} cases of {0} tests; {2} numbers are compared.", r"(\d+) tests passed, 0 failed; (\d+) cases with (\d+) rows"),
+    ("physics", "{0} of {0} jobs of Figure 7 at μ ≥ 0.3 reach a limit cycle, as in the paper.", r"(\d+) of \1 jobs at μ ≥ 0\.3 are periodic"),
+    ("physics", "At 7 rpm and μ = 0.4 the frequency is {1} times the paper's 14.5 kHz.", r"limit-cycle frequency at 7 rpm \| 14 500 Hz \| (\d+) Hz \| ([\d.]+) times"),
+    ("reproduction", "The damping that the paper leaves open moves μ\\* of its reference job from {0} to {1}.", r"\| 0\.5 \| 0 ns \| ([\d.]+) \|.*?\| 1 \| 27\.5 ns \| ([\d.]+) \|"),
+    ("agreement", "A separate implementation of the model gives a μ\\* that is {0} apart at μ = 0.4 and 7 rpm.", r"μ 0\.4, 7 rpm \| [\d.]+ \| [\d.]+ \| ([\d.]+)"),
+    ("choices", "What the paper leaves open moves μ\\* at μ = 0.4 and 7 rpm between {0} and {1}.", r"\| 7 \|[^|]*\|[^|]*\|[^|]*\| ([\d.]+) … ([\d.]+)"),
+    ("accuracy", "With the settings of `figure7` the error of μ\\* by mesh and time step is at most {0} % at four speeds (μ = 0.4, β_R = 50 ns).", r"largest error of μ\\\* over the four speeds is ([\d.]+) %"),
+    ("mesh_errors", "{1} % of {0} errors of μ\\* on the second mesh are within their bounds, in the scenes for which the bounds were chosen.", r"\| 2, after 1 \| (\d+) \| ([\d.]+) % \|"),
+    ("mesh_errors", "In scenes that took no part, {0} of {1} are.", r"took no part (\d+) of (\d+) are covered"),
+    ("eigenvalues", "A stable job that eigenvalues decide takes {0} % less time.", r"a stable job of `figure7` that eigenvalues decide takes (\d+) % less time"),
+    ("verdicts", "{0} verdicts on random pins differ from their runs without an explanation.", r"Not explained: (\d+)"),
+    ("stability", "The energies of all {0} results of hostile scenes close.", r"The energies of all (\d+) results close"),
+    ("elastic_disk", "The steel disk lowers the frequency by {0} to {1} % and changes μ\\* by {2} to +{3}.", r"lowers the frequency by ([\d.]+) to ([\d.]+) %\*\* and changes μ\\?\* by (-[\d.]+) to \+([\d.]+\d)"),
+    ("scenes", "A holder changes μ\\* by up to {0} %.", r"largest change of μ\\\* from the ideal clamp is (\d+) %"),
+    ("holders", "{1} of {0} results with a holder differ from a run ten times as long by more than 1 %.", r"Of (\d+) results, (\d+) differ from the long run by more than 1 %"),
+    ("large_strains", "A rubber pin squeals {0} % higher than the linear model says at {1} % of mean strain.", r"and ([\d.]+) % higher at ([\d.]+) %\."),
+    ("yielding_pin", "An aluminium pin whose edges yield and shake down has a μ\\* within {0} % of a linear pin.", r"μ\\\* is within ([\d.]+) % and the frequency"),
+    ("rig", "A rig from the literature squeals here, {0} % too high on the mesh of full elements.", r"the last mesh above is ([\d.]+) % too high in frequency"),
+    ("growing", "A grid that finds as much as a plan that learns has {0} times as many jobs.", r"\*\*([\d.]+) times as many\*\*"),
+    ("calibration_proof", "In {1} of {0} synthetic experiments the truth is inside the region.", r"given (\d+) synthetic experiments\. \*\*The truth was inside the region in (\d+) of them"),
+    ("performance", "`figure7` took {0} s on two threads (β_R = 50 ns).", r"\| 2 \| ([\d.]+) \| [\d.]+ \| \d+ \| Two threads"),
+    ("cost", "`figure7` was predicted to take {0} to {1} s, and took {2} s.", r"figure7 \| 1 \| 102 \| ([\d.]+) – ([\d.]+) \| \d+ \| ([\d.]+) \| yes"),
+]
+
+
+def head_commit():
+    done = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True)
+    return done.stdout.strip()
+
+
+def solver_version():
+    return int(re.search(r'pub const VERSION: &str = "(\d+)"', (ROOT / "src/solver/mod.rs").read_text())[1])
+
+
+def stamps():
+    return json.loads(STAMPS.read_text())
+
+
+def stamp(part):
+    """Notes that the runs of a part were made now."""
+    known = stamps()
+    known[part] = {"date": datetime.date.today().isoformat(), "commit": head_commit(), "solver": solver_version()}
+    STAMPS.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")
+
+
+def collapsed(text):
+    return " ".join(text.split())
+
+
+def sentences(part, text):
+    """The claims of a part with their numbers. The words that have a number must be in the text."""
+    for own, sentence, pattern in CLAIMS:
+        if own == part:
+            found = re.search(pattern, collapsed(text))
+            if not found:
+                sys.exit(f"the part `{part}` of docs/evidence/{PAGE_OF[part]}.md has no words like {pattern}, from which its claim takes its numbers")
+            yield sentence.format(*found.groups())
+
+
+def origin(part, known):
+    own = known[part]
+    now = solver_version()
+    version = f"version {own['solver']} of the solver" + (f", which is at {now} now" if own["solver"] != now else "")
+    return f"{own['date']}, commit {own['commit']}, {version}"
+
+
+def head(part, text, known):
+    claims = " ".join(f"**{sentence}**" for sentence in sentences(part, text))
+    return f"{claims} *Runs of {origin(part, known)}.*".strip()
+
+
+def bare(text):
+    """A text without the heads that this script has put into it."""
+    return re.sub(r"<!-- head -->.*?<!-- /head -->\n\n?", "", text, flags=re.S)
+
+
+def with_head(part, text, known):
+    """A part with its head below its title."""
+    title, rest = text.split("\n", 1)
+    return f"{title}\n\n<!-- head -->\n{head(part, text, known)}\n<!-- /head -->\n\n{rest.lstrip()}"
+
+
+def demoted(text):
+    """A part as a chapter of a page: its headings are one level down."""
+    blocks = text.split("```")
+    blocks[::2] = [re.sub(r"^#", "##", block, flags=re.M) for block in blocks[::2]]
+    return "```".join(blocks)
+
+
+def promoted(text):
+    blocks = text.split("```")
+    blocks[::2] = [re.sub(r"^##", "#", block, flags=re.M) for block in blocks[::2]]
+    return "```".join(blocks)
+
+
+def parts(page):
+    """The parts of a page as their scripts wrote them."""
+    title, names = PAGES[page]
+    path = FOLDER / f"{page}.md"
+    text = bare(path.read_text())
+    if not title:
+        return {names[0]: text}
+    _, *found = re.split(r"<!-- part (\w+) -->\n", text)
+    return {name: promoted(own).rstrip() + "\n" for name, own in zip(found[::2], found[1::2])}
+
+
+def page_text(page, own):
+    """A page of its parts."""
+    title, names = PAGES[page]
+    known = stamps()
+    if not title:
+        return with_head(names[0], own[names[0]], known)
+    chapters = [f"<!-- part {name} -->\n{demoted(with_head(name, own[name], known)).rstrip()}\n" for name in names]
+    return f"# {title}\n\n" + "\n".join(chapters)
+
+
+def with_part(part, text):
+    """The page in which a part has a new text."""
+    page = PAGE_OF[part]
+    return page, page_text(page, {**parts(page), part: text})
+
+
+CLAIMS_PAGE = """# Claims and numbers
+
+`scripts/evidence.py` writes this page. Each claim takes its numbers from the page that it names. The last columns say which runs the numbers come from
+([stamps.json](stamps.json)). The solver is at version {version} now; {old} of {count} parts come from an older one. Versions change for many reasons, most of which move no number of these pages
+([CHANGELOG](../../CHANGELOG.md)). Every night one part is computed again, and its numbers must not have changed ([Nightly](../developers/nightly.md#evidence-in-turn)).
+
+| claim | page | date | commit | solver |
+|---|---|---|---|---|
+{rows}
+
+What is not verified: [verification.md](verification.md#what-is-not-verified), [accuracy.md](accuracy.md#not-verified), [mesh_errors.md](mesh_errors.md#not-known),
+[stability.md](stability.md#what-is-not-verified), [eigenvalues.md](eigenvalues.md#what-is-not-covered). What is not modelled: [theory.md](theory.md#what-is-not-modelled).
+That the tests catch wrong programs: [mutants.md](../developers/mutants.md).
+"""
+
+
+def claims_page(every):
+    known = stamps()
+    rows = []
+    for part, text in every.items():
+        for sentence in sentences(part, text):
+            own = known[part]
+            rows.append(f"| {sentence} | [{PAGE_OF[part]}.md]({PAGE_OF[part]}.md) | {own['date']} | {own['commit']} | {own['solver']} |")
+    old = sum(own["solver"] < solver_version() for own in known.values())
+    return CLAIMS_PAGE.format(version=solver_version(), old=old, count=len(known), rows="\n".join(rows))
+
+
+def written():
+    """Each page of this script with what it should be."""
+    own = {page: parts(page) for page in PAGES}
+    every = {part: text for page in own.values() for part, text in page.items()}
+    pages = {f"{page}.md": page_text(page, found) for page, found in own.items()}
+    return {**pages, "claims.md": claims_page(every)}
+
+
+# Scripts that take some minutes on two cores, for the turns of the nights. The others take hours or need other programs; their pages say so.
+TURNS = ["agreement", "scenes", "growing", "verdicts", "elastic_disk", "reproduction", "physics", "large_strains", "yielding_pin", "holders", "verification"]
+SCRIPT_OF = {"large_strains": "strains", "yielding_pin": "yielding"}
+# What a machine decides.
+TIMES = re.compile(r"(takes|took|times? the time|run time|solver time|CPU)")
+
+
+def turn(number):
+    part = TURNS[number % len(TURNS)]
+    page = PAGE_OF[part]
+    before = parts(page)[part].splitlines()
+    script = f"scripts/{SCRIPT_OF.get(part, part)}.py"
+    print(f"{script}: last run {origin(part, stamps())}", flush=True)
+    subprocess.run([sys.executable, str(ROOT / script)], cwd=ROOT, check=True)
+    after = parts(page)[part].splitlines()
+    changed = [line for line in difflib.unified_diff(before, after, "before", "now", n=0, lineterm="") if not TIMES.search(line)]
+    print("\n".join(changed) if changed else f"{part}: no number has changed")
+    return 1 if any(line[0] in "+-" and line[:3] not in ("+++", "---") for line in changed) else 0
+
+
+def main():
+    if sys.argv[1:2] == ["--turn"]:
+        sys.exit(turn(int(sys.argv[2]) if len(sys.argv) > 2 else datetime.date.today().toordinal()))
+    wrong = []
+    for name, text in written().items():
+        path = FOLDER / name
+        if "--check" not in sys.argv:
+            path.write_text(text)
+        elif not path.exists() or path.read_text() != text:
+            wrong.append(name)
+    if wrong:
+        sys.exit(f"docs/evidence: {', '.join(wrong)} are not what scripts/evidence.py writes: run it")
+
+
+if __name__ == "__main__":
+    main()
