@@ -169,7 +169,7 @@ CLAIMS_PAGE = """# Claims and numbers
 
 `scripts/evidence.py` writes this page. Each claim takes its numbers from the page that it names. The last columns say which runs the numbers come from
 ([stamps.json](stamps.json)). The solver is at version {version} now; {old} of {count} parts come from an older one. Versions change for many reasons, most of which move no number of these pages
-([CHANGELOG](../../CHANGELOG.md)). Every night one part is computed again, and its numbers must not have changed ([Nightly](../developers/nightly.md#evidence-in-turn)).
+([history](../developers/history.md)). Every night one part is computed again, and its numbers must not have changed ([Nightly](../developers/nightly.md#evidence-in-turn)).
 
 | claim | page | date | commit | solver |
 |---|---|---|---|---|

@@ -255,7 +255,7 @@ class Sliding:
                 "open_share": float(block.base_area[~self.touching].sum() / block.base_area.sum())}
 
 
-# μ and the speed [rpm] of a point of docs/eigenvalues.md.
+# μ and the speed [rpm] of a point of docs/evidence/eigenvalues.md.
 POINTS = [(0.4, 7)]
 # Order of the elements, layers towards the clamp's edges, top and ends, and further elements of the base in x and y.
 MODE_LEVELS = [(2, 2, 3), (2, 3, 3), (2, 4, 3)]
