@@ -129,9 +129,13 @@ fn paths_in_documents_exist() {
             found.insert(path);
         }
     }
-    for known in
-        ["studies/mini.json", "scripts/postgres.sh", ".ci/run", "tests/verification", "docs/developers/nightly.md"]
-    {
+    for known in [
+        "studies/mini.json",
+        "scripts/postgres.sh",
+        ".ci/run",
+        "tests/verification",
+        "docs/developers/nightly.md",
+    ] {
         assert!(found.contains(known), "{known} is not found");
     }
 }

@@ -89,7 +89,10 @@ fn log_if_foreign(study: &Study, job: &SelectedJob) {
         && let Ok(jobs) = study.expand(solver::VERSION)
         && !jobs.iter().any(|own| own.key == job.key)
     {
-        log(format_args!("this job is none of the points of {}", study.name()));
+        log(format_args!(
+            "note: this point is not in the grid of {}; it is computed all the same",
+            study.name()
+        ));
     }
 }
 

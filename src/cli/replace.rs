@@ -1,4 +1,4 @@
-//! Submitting a study whose name the database may have: what changes is said, and results go out of view only if the user
+//! Submitting a study whose name the database may have: what changes is said, and a study loses results only if the user
 //! wants it.
 
 use super::error::CliError;
@@ -11,7 +11,7 @@ use std::io::{self, IsTerminal, Write};
 /// Whether a study of the same name may be replaced.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Replacement {
-    /// Replace a study of the same name even if results of jobs that only the old one has go out of view. They stay in the
+    /// Replace a study of the same name even if the new one lacks finished jobs of the old one. Their results stay in the
     /// database until `gc`.
     #[arg(long = "replace")]
     pub(crate) is_wanted: bool,

@@ -39,8 +39,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
 /// What a removal comprises.
 fn in_words(&Removed { rows, jobs, done, shared_done, cancelled }: &Removed) -> String {
     format!(
-        "{} of {} (results out of view: {}; results that other studies have too: {shared_done}; pending jobs cancelled: \
-         {cancelled})",
+        "{} of {} (results that no study has any more: {}; results that other studies have too: {shared_done}; pending jobs \
+         cancelled: {cancelled})",
         count(rows, "row"),
         count(jobs, "job"),
         done - shared_done

@@ -145,10 +145,10 @@ pub enum QueueError {
         name: String,
     },
 
-    /// A study of that name exists, and replacing it would take results out of view.
+    /// A study of that name exists, and replacing it would take results from it.
     #[error(
-        "the database has another study `{name}`, and replacing it would take results out of view ({}); allow that with \
-         --replace, or give this study another \"name\" (--name NAME)",
+        "the database has another study `{name}`, and replacing it would take results from it ({}; they stay stored); allow \
+         that with --replace, or give this study another \"name\" (--name NAME)",
         .replaced.dropped_done
     )]
     ResultsWouldBeDropped {

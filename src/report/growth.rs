@@ -131,7 +131,7 @@ pub struct Basin {
 const Z: f64 = 1.959_964;
 
 impl Basin {
-    /// The share of the kicks that ended in it, and the interval that has the true share with 95 % (Wilson 1927).
+    /// The share of the kicks that ended in it, and its 95 % confidence interval (Wilson 1927).
     pub fn share(&self) -> [f64; 3] {
         let (n, p) = (self.of as f64, self.jobs as f64 / self.of as f64);
         let centre = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
@@ -273,7 +273,7 @@ const BASINS: [Column<Basin>; 8] = [
     Column::new("jobs", "", "jobs that ended in this state", |own| own.jobs.into()),
     Column::new("of", "", "all jobs of the point that have ended", |own| own.of.into()),
     Column::new("share", "", "their quotient", |own| value::significant_number(own.share()[0], 3)),
-    Column::new("share_from", "", "lower end of the interval that has the true share with 95 %", |own| value::significant_number(own.share()[1], 3)),
+    Column::new("share_from", "", "lower end of the 95 % confidence interval of the share", |own| value::significant_number(own.share()[1], 3)),
     Column::new("share_to", "", "its upper end", |own| value::significant_number(own.share()[2], 3)),
 ];
 
@@ -376,8 +376,8 @@ impl Findings {
             },
             FindingsTable {
                 heading: "Basins",
-                meaning: "The states in which the jobs ended that were kicked from each point, and their shares with the interval that has \
-                          the true share with a probability of 95 % (Wilson). A line without μ* has the runs that failed or did not settle.",
+                meaning: "The states in which the jobs ended that were kicked from each point, and their shares with 95 % \
+                          confidence intervals (Wilson). A line without μ* has the runs that failed or did not settle.",
                 table: table("basins", &self.basins, |own| own.parameters.clone(), &BASINS),
             },
         ];

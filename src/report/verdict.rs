@@ -37,7 +37,7 @@ impl Comparison {
                 1 => "the one point".to_owned(),
                 several => format!("all {}", count(several as u64, "point")),
             };
-            format!("squeal: {} and the others say the same at {points} where both say it.", self.reference)
+            format!("squeal: {} and the others agree at {points} where both are known.", self.reference)
         });
         of_quantities.chain(of_squeal).collect()
     }

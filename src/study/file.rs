@@ -31,7 +31,7 @@ pub(super) struct StudyFile {
     /// What the study is for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// Mesh, time step and detection by one word; what is given explicitly goes before it.
+    /// Mesh, time step and detection by one word; what the file gives itself overrides it.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "Preset")]
     pub preset: Option<Preset>,

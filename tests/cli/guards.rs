@@ -123,7 +123,7 @@ fn removals_can_be_tried() {
     folder.add("other", &small(&json!({ "mu": [0.4] })));
     folder.ok("run mine.json");
     folder.ok("submit other.json");
-    let what = "2 rows of 2 jobs (results out of view: 1; results that other studies have too: 1; pending jobs \
+    let what = "2 rows of 2 jobs (results that no study has any more: 1; results that other studies have too: 1; pending jobs \
                 cancelled: 0)";
     assert_eq!(
         folder.ok("rm mine --dry-run"),

@@ -87,6 +87,28 @@ fn bisected(mut low: f64, mut high: f64, is_above: impl Fn(f64) -> bool) -> f64 
     0.5 * (low + high)
 }
 
+/// Where a rising function is within `within` of zero (method of Illinois). Its values are of bodies, which take a while.
+fn zero(low: f64, high: f64, within: f64, value: impl Fn(f64) -> f64) -> f64 {
+    let mut ends = [low, high].map(|x| (x, value(x)));
+    let mut last = None;
+    for _ in 0..60 {
+        let [(low, at_low), (high, at_high)] = ends;
+        let x = (low * at_high - high * at_low) / (at_high - at_low);
+        let found = value(x);
+        if found.abs() <= within {
+            return x;
+        }
+        let side = usize::from(found > 0.0);
+        ends[side] = (x, found);
+        // An end that stays twice would hold the line too steep.
+        if last == Some(side) {
+            ends[1 - side].1 *= 0.5;
+        }
+        last = Some(side);
+    }
+    panic!("no zero in {ends:?}");
+}
+
 /// The Kirchhoff stress of a bar that is stretched to λ, and its plastic strain: the yield stress at ln λ − ln a, where a and b are the elastic
 /// stretches with no stress across.
 fn tension(stretch: f64, yield_pa: impl Fn(f64) -> f64) -> [f64; 2] {
@@ -137,7 +159,7 @@ fn tension_has_the_yield_stress() {
                 let stretch = (0.01 * f64::from(number)).exp();
                 let f = |b: f64| [[b, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, stretch]];
                 let time_step_s = 1.0e-4;
-                let across = bisected(0.8, 1.1, |b| body.tried(f(b), time_step_s)[0][0] > 0.0);
+                let across = zero(0.8, 1.1, 1.0e-12 * YIELD_PA, |b| body.tried(f(b), time_step_s)[0][0]);
                 let found_pa = body.step(f(across), time_step_s)[2][2] * stretch;
                 let [exact_pa, strain] = tension(stretch, yield_pa);
                 // With a rate the elastic strain comes to its end after some steps.

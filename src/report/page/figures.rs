@@ -95,7 +95,7 @@ pub(super) fn frequency(parts: &Parts) -> Section {
         parts.report.rows.iter().any(|row| row.record().is_none_or(|record| record.frequency_hz.is_none()));
     let map = format!(
         "The same frequencies over {axis} and {by}.{}{}",
-        if without { " A letter: the job has no frequency." } else { "" },
+        if without { " Letters mark jobs without a frequency." } else { "" },
         if aperiodic { " ~: not periodic, and not in the colour scale." } else { "" }
     );
     let waterfall = format!(
@@ -134,7 +134,7 @@ pub(super) fn regimes(parts: &Parts) -> Section {
     );
     let growth = format!(
         "Growth rate of the fastest growing, or slowest decaying, strong line of jobs that ended in steady sliding, over \
-         {axis} and {by}. Blue decays: sliding is stable. A letter: the job has no growth rate, because it has a limit cycle \
+         {axis} and {by}. Blue decays: sliding is stable. Letters mark jobs without a growth rate, which have a limit cycle \
          or no result."
     );
     let mut blocks = figures(parts, Plot::RegimeMap, &map);

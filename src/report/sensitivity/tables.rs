@@ -98,7 +98,7 @@ impl Sensitivity {
         }
         if let Some(chance) = self.chance.filter(|_| has_chance) {
             let chance = value::fixed(chance, 2);
-            notes.push(format!("A parameter without effect has {what} up to {chance} by chance."));
+            notes.push(format!("A parameter without effect could have {what} of {chance}."));
         }
         if self.chance.is_some() && self.points < FEW_POINTS {
             let points = self.points;

@@ -69,7 +69,7 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
             let (wanted, given_up) = refine::wanted(&study, settings, &rows);
             if wanted.is_empty() {
                 let note = match given_up {
-                    0 => "everything is known as well as it is asked for".to_owned(),
+                    0 => "all tolerances of the study are met".to_owned(),
                     given_up => {
                         let intervals = count(given_up as u64, "interval");
                         format!(

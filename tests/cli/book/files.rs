@@ -68,7 +68,10 @@ pub fn assert_documented<'a>(page: &str, written: impl Iterator<Item = &'a Strin
         }
     }
     assert!(unknown.is_empty(), "docs/reference.md does not have {unknown:?}");
-    assert!(unused.values().all(Vec::is_empty), "no example writes these files of docs/reference.md: {unused:?}");
+    assert!(
+        unused.values().all(Vec::is_empty),
+        "no example writes these files of docs/reference.md: {unused:?}"
+    );
 }
 
 /// Protects: files are compared with the page as it means them.
