@@ -1,9 +1,9 @@
 //! The page for a browser: its contents, what it leaves out, and that texts of a study are never markup.
 
 use crate::charts::drawings;
-use crate::synthetic::{after, failed, numerics, partial_study, periodic, report, row, with};
+use crate::synthetic::{after, done, failed, numerics, partial_study, periodic, report, row, with};
 use std::fs;
-use tribosweep_mechanics::analysis::{Build, Regime};
+use tribosweep_mechanics::analysis::{Build, Outcome, Regime};
 use tribosweep_output::report::{
     JobNumerics, JobRow, Provenance, Report, ResultGroup, RowState, accuracy, inspections, write,
 };
@@ -269,6 +269,17 @@ fn the_first_sentence_claims_no_error_that_is_not_known() {
     assert!(known.contains("0.263 ±"), "{known}");
     let unknown = sentence(job());
     assert!(unknown.contains("to 0.263") && !unknown.contains('±'), "{unknown}");
+}
+
+/// Protects: the first sentence speaks of jobs that settled alone, and says so where others did not.
+#[test]
+fn the_first_sentence_says_which_jobs_settled() {
+    let stable = |omega| row(omega, 0.4, done(Outcome::Decayed, Regime::Stable, 0.3995));
+    let open = row(9.0, 0.4, done(Outcome::NotPeriodic, Regime::StickSlip, 0.23));
+    let all = text(&page(&[stable(5.0), stable(7.0)]));
+    assert!(all.contains("μ* is μ within half a per cent in all jobs."), "{all}");
+    let some = text(&page(&[stable(5.0), stable(7.0), open]));
+    assert!(some.contains("μ* is μ within half a per cent in the 2 jobs that settled."), "{some}");
 }
 
 /// Protects: the head names the damping of the material, that of the time scheme, or both and their sum; jobs of several dampings have no

@@ -49,12 +49,16 @@ fn found(parts: &Parts) -> Vec<String> {
     sources.iter().filter_map(|source| of_source(source.name)).chain(threshold).chain(findings).collect()
 }
 
+/// Whether a run came to its end. The average of one that did not settle is no result to begin with.
+fn has_settled(row: &JobRow) -> bool {
+    row.record().is_some_and(|record| record.outcome != Outcome::NotPeriodic)
+}
+
 /// The job whose macroscopic coefficient is the smallest in relation to the local one.
 fn lowest<'a>(rows: &[&'a JobRow]) -> Option<(&'a JobRow, &'a JobRecord)> {
-    // The average of a run that did not settle is no result to begin with.
-    let settled = |row: &JobRow| row.record().is_some_and(|record| record.outcome != Outcome::NotPeriodic);
     let ratio = |row: &JobRow| {
-        Some(row.record()?.mu_star / row.parameters.mu()).filter(|ratio| ratio.is_finite() && settled(row))
+        Some(row.record()?.mu_star / row.parameters.mu())
+            .filter(|ratio| ratio.is_finite() && has_settled(row))
     };
     let ratios = rows.iter().filter_map(|row| Some((ratio(row)?, *row)));
     let (_, row) = ratios.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -68,9 +72,16 @@ fn friction(rows: &[&JobRow]) -> Option<String> {
     let (row, record) = lowest(rows)?;
     if record.mu_star / row.parameters.mu() > LITTLE {
         // Where friction depends on the speed, μ* can be above μ.
-        let ratios = rows.iter().filter_map(|row| Some(row.record()?.mu_star / row.parameters.mu()));
+        let settled = rows.iter().filter(|row| has_settled(row));
+        let ratios = settled.clone().filter_map(|row| Some(row.record()?.mu_star / row.parameters.mu()));
         let is_mu = ratios.fold(0.0, f64::max) < 2.0 - LITTLE;
-        return is_mu.then(|| "μ* is μ within half a per cent in all jobs.".to_owned());
+        let done = rows.iter().filter(|row| row.record().is_some()).count();
+        let which = match settled.count() {
+            all if all == done => "all jobs".to_owned(),
+            1 => "the one job that settled".to_owned(),
+            several => format!("the {several} jobs that settled"),
+        };
+        return is_mu.then(|| format!("μ* is μ within half a per cent in {which}."));
     }
     let mu_star = digits::with_error(MU_STAR, row);
     let place = parameters_in_words(row);
