@@ -45,8 +45,8 @@ pub(crate) struct Args {
     #[arg(long)]
     no_thresholds: bool,
     /// The parameter whose thresholds are looked for: the values at which sliding becomes unstable or stable. It varies in the
-    /// grid or in samples.zip and is no whole number; what else is in the zip moves with it. Default: mu; if the study does not vary
-    /// it, the first other such parameter, and omega_rpm only if there is no other.
+    /// grid or in samples.zip and is no count, such as a number of elements; what else is in the zip moves with it. Default: mu;
+    /// if the study does not vary it, the first other such parameter, and omega_rpm only if there is no other.
     #[arg(long, value_name = "NAME", conflicts_with = "no_thresholds")]
     along: Option<String>,
     #[command(flatten)]
@@ -115,7 +115,7 @@ fn along(plan: &Plan, args: &Args) -> Result<Option<Along>, CliError> {
     let names: Vec<&str> = ways.iter().map(|along| along.parameter.as_str()).collect();
     let names = if names.is_empty() { "it has none".to_owned() } else { names.join(", ") };
     Err(CliError::Usage(format!(
-        "--along {name}: expected a parameter with two values or more in `grid`, or one of `samples.zip`, that is no whole number; in \
-         this study: {names}"
+        "--along {name}: expected a parameter with two values or more in `grid`, or one of `samples.zip`; numbers of \
+         elements and other counts cannot be one; in this study: {names}"
     )))
 }

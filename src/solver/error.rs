@@ -33,8 +33,8 @@ pub enum SolverError {
     /// The mesh has no node row near the clamp's width.
     #[error(
         "scene.clamp.width_m = {width_m} m has no node row near it: with {elements} elements over \
-         {length_m} m the nearest widths are {} m and {} m; choose one of these or a finer mesh",
-        short(*.below_m), short(*.above_m)
+         {length_m} m {}; choose a width of the mesh or a finer mesh",
+        nearest_widths(*.below_m, *.above_m)
     )]
     ClampOffMesh {
         /// The requested width \[m\].
@@ -128,4 +128,14 @@ pub enum SolverError {
         /// The likely cause.
         cause: String,
     },
+}
+
+/// The widths of strips that a mesh has next to the one that is wanted, in words.
+fn nearest_widths(below_m: f64, above_m: f64) -> String {
+    let [below, above] = [short(below_m), short(above_m)];
+    if below == above {
+        format!("the nearest width is {below} m")
+    } else {
+        format!("the nearest widths are {below} m and {above} m")
+    }
 }
