@@ -2,8 +2,8 @@
 """The pages of docs/evidence: what each of them claims, when its runs were made, and with which version of the solver.
 
     scripts/evidence.py            write docs/evidence/claims.md and the heads of the pages
-    scripts/evidence.py --check    end with 1 if a claim, a number or a head is not what the pages say
-    scripts/evidence.py --turn [N] run the script of the part whose turn it is today (or the N-th), and end with 1 if a number has changed
+    scripts/evidence.py --check    end with 1 if a claim or a head is not what the pages say, and name the parts that are older than the solver
+    scripts/evidence.py --turn [N] run the script of the part whose turn it is today (or the N-th), and end with 1 if a number of its claims has changed
 
 A page consists of the parts that scripts write with `runs.write`. The date, the commit and the version of the solver of each part are in
 docs/evidence/stamps.json. Claims take their numbers from the pages, so a new run of a script changes them.
@@ -48,21 +48,21 @@ CLAIMS = [
     ("physics", "At 7 rpm and μ = 0.4 the frequency is {1} times the paper's 14.5 kHz.", r"limit-cycle frequency at 7 rpm \| 14 500 Hz \| (\d+) Hz \| ([\d.]+) times"),
     ("reproduction", "The damping that the paper leaves open moves μ\\* of its reference job from {0} to {1}.", r"\| 0\.5 \| 0 ns \| ([\d.]+) \|.*?\| 1 \| 27\.5 ns \| ([\d.]+) \|"),
     ("agreement", "A second solver, in Python, gives the same μ\\* within {0} at six speeds and one stable point.", r"largest difference of μ\* in this table is ([\d.]+\d)"),
-    ("agreement", "The leading friction mode is {0} of itself from that of an assembly with scipy, which is {1} from CalculiX with its kind of mass.", r"\| tribosweep \| lumped \|[^|]*\|[^|]*\|[^|]*\| (\S+) \| \| CalculiX \| consistent \|[^|]*\|[^|]*\|[^|]*\| (\S+) \|"),
+    ("agreement", "The leading friction modes of the program, of an assembly with scipy and of CalculiX agree within {0} of themselves.", r"Both differences are below (\S+), as"),
     ("choices", "What the paper leaves open moves μ\\* at μ = 0.4 and 7 rpm between {0} and {1}.", r"\| 7 \|[^|]*\|[^|]*\|[^|]*\| ([\d.]+) … ([\d.]+)"),
     ("accuracy", "With the settings of `figure7` the error of μ\\* by mesh and time step is at most {0} % at four speeds (μ = 0.4, β_R = 50 ns).", r"largest error of μ\\\* over the four speeds is ([\d.]+) %"),
     ("mesh_errors", "{1} % of {0} errors of μ\\* on the second mesh are within their bounds, in the scenes for which the bounds were chosen.", r"\| 2, after 1 \| (\d+) \| ([\d.]+) % \|"),
     ("mesh_errors", "In scenes that took no part, {0} of {1} are.", r"took no part (\d+) of (\d+) are covered"),
-    ("eigenvalues", "A stable job that eigenvalues decide takes {0} % less time.", r"a stable job of `figure7` that eigenvalues decide takes (\d+) % less time"),
+    ("eigenvalues", "A stable job of `figure7` that eigenvalues decide takes {0} % less time.", r"a stable job of `figure7` that eigenvalues decide takes (\d+) % less time"),
     ("verdicts", "{0} verdicts on random pins differ from their runs without an explanation.", r"Not explained: (\d+)"),
     ("stability", "The energies of all {0} results of hostile scenes close.", r"The energies of all (\d+) results close"),
-    ("elastic_disk", "The steel disk lowers the frequency by {0} to {1} % and changes μ\\* by {2} to +{3}.", r"lowers the frequency by ([\d.]+) to ([\d.]+) %\*\* and changes μ\\?\* by (-[\d.]+) to \+([\d.]+\d)"),
+    ("elastic_disk", "At μ = 0.4 the steel disk lowers the frequency by {0} to {1} % and changes μ\\* by {2} to +{3}.", r"lowers the frequency by ([\d.]+) to ([\d.]+) %\*\* and changes μ\\?\* by (-[\d.]+) to \+([\d.]+\d)"),
     ("scenes", "A holder changes μ\\* by up to {0} %.", r"largest change of μ\\\* from the ideal clamp is (\d+) %"),
     ("holders", "{1} of {0} results with a holder differ from a run ten times as long by more than 1 %.", r"Of (\d+) results, (\d+) differ from the long run by more than 1 %"),
     ("large_strains", "A rubber pin squeals {0} % higher than the linear model says at {1} % of mean strain.", r"and ([\d.]+) % higher at ([\d.]+) %\."),
     ("yielding_pin", "An aluminium pin whose edges yield and shake down has a μ\\* within {0} % of a linear pin.", r"μ\\\* is within ([\d.]+) % and the frequency"),
     ("rig", "A rig from the literature squeals here, {0} % too high on the mesh of full elements.", r"the last mesh above is ([\d.]+) % too high in frequency"),
-    ("growing", "A grid that finds as much as a plan that learns has {0} times as many jobs.", r"\*\*([\d.]+) times as many\*\*"),
+    ("growing", "A grid that finds as much as `studies/refine.json` has {0} times as many jobs.", r"\*\*([\d.]+) times as many\*\*"),
     ("calibration_proof", "In {1} of {0} synthetic experiments the truth is inside the region.", r"given (\d+) synthetic experiments\. \*\*The truth was inside the region in (\d+) of them"),
     ("performance", "`figure7` took {0} s on two threads (β_R = 50 ns).", r"\| 2 \| ([\d.]+) \| [\d.]+ \| \d+ \| Two threads"),
     ("cost", "`figure7` was predicted to take {0} to {1} s, and took {2} s.", r"figure7 \| 1 \| 102 \| ([\d.]+) – ([\d.]+) \| \d+ \| ([\d.]+) \| yes"),
@@ -83,9 +83,11 @@ def stamps():
 
 
 def stamp(part):
-    """Notes that the runs of a part were made now."""
+    """Notes that a part was written now, from results of this version of the solver: keys of kept results have the version."""
     known = stamps()
-    known[part] = {"date": datetime.date.today().isoformat(), "commit": head_commit(), "solver": solver_version()}
+    changed = subprocess.run(["git", "status", "--porcelain", "src", "Cargo.lock"], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
+    commit = head_commit() + (" with changes" if changed else "")
+    known[part] = {"date": datetime.date.today().isoformat(), "commit": commit, "solver": solver_version()}
     STAMPS.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")
 
 
@@ -112,7 +114,7 @@ def origin(part, known):
 
 def head(part, text, known):
     claims = " ".join(f"**{sentence}**" for sentence in sentences(part, text))
-    return f"{claims} *Runs of {origin(part, known)}.*".strip()
+    return f"{claims} *Results of {origin(part, known)}.*".strip()
 
 
 def bare(text):
@@ -170,7 +172,8 @@ CLAIMS_PAGE = """# Claims and numbers
 
 `scripts/evidence.py` writes this page. Each claim takes its numbers from the page that it names. The last columns say which runs the numbers come from
 ([stamps.json](stamps.json)). The solver is at version {version} now; {old} of {count} parts come from an older one. Versions change for many reasons, most of which move no number of these pages
-([history](../developers/history.md)). Every night one part is computed again, and its numbers must not have changed ([Nightly](../developers/nightly.md#evidence-in-turn)).
+([history](../developers/history.md)). Every night one of the parts whose scripts take minutes is computed again, and the numbers of its claims must not have changed ([Nightly](../developers/nightly.md#evidence-in-turn)).
+Origins of before 2026-11-28 are the commits in which a number in the tables of the part has changed for the last time.
 
 | claim | page | date | commit | solver |
 |---|---|---|---|---|
@@ -202,37 +205,43 @@ def written():
 
 
 # Scripts that take some minutes on two cores, for the turns of the nights. The others take hours or need other programs; their pages say so.
-TURNS = ["agreement", "scenes", "growing", "verdicts", "elastic_disk", "reproduction", "physics", "large_strains", "yielding_pin", "holders", "verification"]
+TURNS = ["agreement", "scenes", "growing", "verdicts", "elastic_disk", "reproduction", "physics", "large_strains", "yielding_pin", "holders"]
 SCRIPT_OF = {"large_strains": "strains", "yielding_pin": "yielding"}
-# What a machine decides.
-TIMES = re.compile(r"(takes|took|times? the time|run time|solver time|CPU)")
 
 
 def turn(number):
     part = TURNS[number % len(TURNS)]
     page = PAGE_OF[part]
-    before = parts(page)[part].splitlines()
+    before = parts(page)[part]
     script = f"scripts/{SCRIPT_OF.get(part, part)}.py"
     print(f"{script}: last run {origin(part, stamps())}", flush=True)
-    subprocess.run([sys.executable, str(ROOT / script)], cwd=ROOT, check=True)
-    after = parts(page)[part].splitlines()
-    changed = [line for line in difflib.unified_diff(before, after, "before", "now", n=0, lineterm="") if not TIMES.search(line)]
-    print("\n".join(changed) if changed else f"{part}: no number has changed")
-    return 1 if any(line[0] in "+-" and line[:3] not in ("+++", "---") for line in changed) else 0
+    if subprocess.run([sys.executable, str(ROOT / script)], cwd=ROOT, check=False).returncode:
+        return 2
+    after = parts(page)[part]
+    print("\n".join(difflib.unified_diff(before.splitlines(), after.splitlines(), "before", "now", n=0, lineterm="")))
+    write()
+    claims = [list(sentences(part, text)) for text in (before, after)]
+    for old, new in zip(*claims):
+        print(new if old == new else f"CHANGED: {old}\n    now: {new}")
+    return int(claims[0] != claims[1])
+
+
+def write():
+    for name, text in written().items():
+        (FOLDER / name).write_text(text)
 
 
 def main():
     if sys.argv[1:2] == ["--turn"]:
         sys.exit(turn(int(sys.argv[2]) if len(sys.argv) > 2 else datetime.date.today().toordinal()))
-    wrong = []
-    for name, text in written().items():
-        path = FOLDER / name
-        if "--check" not in sys.argv:
-            path.write_text(text)
-        elif not path.exists() or path.read_text() != text:
-            wrong.append(name)
+    if "--check" not in sys.argv:
+        write()
+        return
+    wrong = [name for name, text in written().items() if (FOLDER / name).read_text() != text]
     if wrong:
         sys.exit(f"docs/evidence: {', '.join(wrong)} are not what scripts/evidence.py writes: run it")
+    old = [f"{part} ({own['solver']})" for part, own in stamps().items() if own["solver"] < solver_version()]
+    print(f"older than the solver ({solver_version()}): {', '.join(old)}")
 
 
 if __name__ == "__main__":

@@ -100,8 +100,8 @@ for target in "${targets[@]}"; do
     package="$scratch/$name"
     mkdir -p "$package/completions"
     cp "$program" LICENSE-MIT LICENSE-APACHE CHANGELOG.md CITATION.cff "$package"
-    cp docs/first_sweep.md "$package/INSTALL.md"
-    cp -r docs "$package/book"
+    cp README.md SECURITY.md "$package"
+    cp -r docs "$package/docs"
     cp -r studies "$package"
     for shell in bash fish zsh; do
         "$ordinary" completions "$shell" > "$package/completions/tribosweep.$shell"

@@ -32,7 +32,7 @@ fn files(folder: &str) -> Vec<String> {
 fn documents() -> BTreeMap<String, String> {
     let below = ["docs", "scripts"].into_iter().flat_map(files);
     let pages = below.filter(|file| Path::new(file).extension().is_some_and(|extension| extension == "md"));
-    let all = pages.chain(["README.md".to_owned(), "ARCHITECTURE.md".to_owned()]);
+    let all = pages.chain(["README.md", "ARCHITECTURE.md", "CHANGELOG.md", "SECURITY.md"].map(str::to_owned));
     let with_text = all.map(|file| {
         let text = read(&file);
         (file, text)
