@@ -219,7 +219,6 @@ def turn(number):
         return 2
     after = parts(page)[part]
     print("\n".join(difflib.unified_diff(before.splitlines(), after.splitlines(), "before", "now", n=0, lineterm="")))
-    write()
     claims = [list(sentences(part, text)) for text in (before, after)]
     for old, new in zip(*claims):
         print(new if old == new else f"CHANGED: {old}\n    now: {new}")
@@ -227,6 +226,7 @@ def turn(number):
 
 
 def write():
+    """Writes the claims and the heads of all pages."""
     for name, text in written().items():
         (FOLDER / name).write_text(text)
 

@@ -86,4 +86,5 @@ def write(part, text):
     page, text = evidence.with_part(part, text)
     path = EVIDENCE / f"{page}.md"
     path.write_text(text)
-    print(f"written: {path.relative_to(ROOT)}; now run scripts/evidence.py")
+    evidence.write()
+    print(f"written: {path.relative_to(ROOT)}")

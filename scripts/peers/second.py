@@ -72,7 +72,7 @@ def solve(case):
     y = np.linspace(-SIZE_M[1] / 2, SIZE_M[1] / 2, shape[1])[None, :]
     omega = case["omega_rpm"] * np.pi / 30
     surface = np.stack(np.broadcast_arrays(-omega * y, omega * (RADIUS_M + x)), axis=-1)
-    held = np.isclose(np.linspace(0, SIZE_M[0], shape[0]), 0) | (np.linspace(0, SIZE_M[0], shape[0]) <= case["clamp_width_m"] * (1 + 1e-9))
+    held = np.linspace(0, SIZE_M[0], shape[0]) <= case["clamp_width_m"] * (1 + 1e-9)
     step, damping, mu = case["time_step_s"], case["beta_r_s"], case["mu"]
     base, top = mass[:, :, 0], mass[:, :, -1]
 
