@@ -98,6 +98,9 @@ def run_tests(target, tests, limit_s):
     environment["CARGO_TARGET_DIR"] = str(BUILDS)
     # A mutant may name another compiler, which must not be used.
     environment["RUSTUP_TOOLCHAIN"] = tomllib.loads((ROOT / "rust-toolchain.toml").read_text())["toolchain"]["channel"]
+    if target == "--lib":
+        # The tests inside the sources of the mechanics have a package of their own.
+        target = "--lib --test mechanics_units"
     command = ["cargo", "test", "--locked", *target.split(), "--", "--color=never", "--exact", *tests]
     # A test that fails may leave processes behind. They would hold a pipe open, and the script would wait for them.
     with (

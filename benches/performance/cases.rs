@@ -10,7 +10,7 @@ use tribosweep::solver::body::hexahedron;
 use tribosweep::solver::body::pin::operator::{AssembledOperator, Operator, TensorOperator};
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, RunNumber, State, StateOf, step};
+use tribosweep::solver::{Drive, InLanes, Model, RunNumber, State, StateOf, step};
 use tribosweep::spec::{JobSpec, Precision, Region, StabilityMethod, TopFace};
 
 /// Additions and multiplications of an inner node in a step, counted in
@@ -89,7 +89,7 @@ fn settle(spec: &JobSpec, mut advance: impl FnMut()) {
     }
 }
 
-fn mesh<const L: usize, R: RunNumber>(
+fn mesh<const L: usize, R: InLanes<L>>(
     elements: [usize; 3],
     precision: Precision,
     machine: &Machine,
@@ -146,7 +146,11 @@ impl MeshCase {
 }
 
 /// A mesh with 1, 2, 4 and 8 lanes.
-fn lane_counts<R: RunNumber>(elements: [usize; 3], precision: Precision, machine: &Machine) -> [MeshCase; 4] {
+fn lane_counts<R: InLanes<1> + InLanes<2> + InLanes<4> + InLanes<8>>(
+    elements: [usize; 3],
+    precision: Precision,
+    machine: &Machine,
+) -> [MeshCase; 4] {
     [
         mesh::<1, R>(elements, precision, machine),
         mesh::<2, R>(elements, precision, machine),
@@ -207,7 +211,7 @@ impl Pair {
 }
 
 /// Time of a step of one scene with eight lanes, in ns per node, step and job.
-fn stepping<R: RunNumber>(name: &str, spec: &JobSpec, mu: f64) -> f64 {
+fn stepping<R: InLanes<8>>(name: &str, spec: &JobSpec, mu: f64) -> f64 {
     let model = model(spec);
     let drives = [Drive { law: Law::coulomb(mu), rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
     let mut state = StateOf::<8, R>::at_rest(&model);
@@ -284,7 +288,7 @@ fn round_of_pairs() -> Vec<Pair> {
 
 /// A step with the operator of general meshes, or with that of a block. The pin consists of two regions of the same material, so both
 /// compute the same motion.
-fn general<R: RunNumber>(what: &'static str) -> Pair {
+fn general<R: InLanes<8>>(what: &'static str) -> Pair {
     let block = spec([20, 25, 17]);
     let mut general = block.clone();
     let pin = &mut general.scene.pin;

@@ -16,7 +16,7 @@ use super::sample::{NodeSample, Sample, Sampler};
 use crate::solver::body::pin::History;
 use crate::solver::energy::{Energies, EnergyLedger};
 use crate::solver::lane::LaneState;
-use crate::solver::{Drive, Model, PinMotion, RunNumber, StateOf, guard, step};
+use crate::solver::{Drive, Model, PinMotion, RunNumber, StateOf, guard, step_of_lanes};
 use crate::spec::{JobSpec, Precision, Program};
 use std::sync::Arc;
 
@@ -192,8 +192,8 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
     /// Empty lanes.
     pub fn new(model: Arc<Model>) -> Self {
         Self {
-            state: StateOf::at_rest(&model),
-            ledger: EnergyLedger::new(&model, AUDIT_INTERVAL),
+            state: StateOf::lanes_at_rest(&model),
+            ledger: EnergyLedger::of_lanes(&model, AUDIT_INTERVAL),
             sampler: Sampler::new(&model),
             drives: [IDLE; L],
             runs: std::array::from_fn(|_| None),
@@ -377,10 +377,10 @@ impl<const L: usize, R: RunNumber> AnyLanes for LanesOf<L, R> {
         let mut ended = Vec::new();
         loop {
             let audited = self.ledger.audits(self.state.step);
-            self.ledger.before_step(&self.model, &self.state);
+            self.ledger.before_step_of_lanes(&self.model, &self.state);
             self.follow_programs();
-            step(&self.model, &self.drives, &mut self.state);
-            self.ledger.after_step(&self.model, &self.drives, &self.state);
+            step_of_lanes(&self.model, &self.drives, &mut self.state);
+            self.ledger.after_step_of_lanes(&self.model, &self.drives, &self.state);
             let samples = self.sampler.sample(&self.model, &self.drives, &self.state);
             for lane in 0..L {
                 if let Some(run) = &mut self.runs[lane] {

@@ -36,6 +36,7 @@
 use super::body::EnergySums;
 use super::body::pin::PinAudit;
 use super::body::ring::RingAudit;
+use super::compiled::InLanes;
 use super::drive::Drive;
 use super::interface::InterfaceWork;
 use super::interface::solve::RunNumber;
@@ -134,7 +135,15 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
     ///
     /// # Panics
     /// If `interval` is zero.
-    pub fn new(model: &Model, interval: u64) -> Self {
+    pub fn new(model: &Model, interval: u64) -> Self
+    where
+        R: InLanes<L>,
+    {
+        R::ledger(model, interval)
+    }
+
+    /// [`Self::new`] for any number of lanes, compiled by its caller.
+    pub(crate) fn of_lanes(model: &Model, interval: u64) -> Self {
         assert!(interval > 0, "an interval of at least one step");
         Self {
             interval,
@@ -160,7 +169,15 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
     /// Stores what the audit of the coming step needs of the state at `t_n`.
     ///
     /// All lanes count their steps together, so a job must begin at an audit.
-    pub fn before_step(&mut self, model: &Model, state: &StateOf<L, R>) {
+    pub fn before_step(&mut self, model: &Model, state: &StateOf<L, R>)
+    where
+        R: InLanes<L>,
+    {
+        R::before_step(self, model, state);
+    }
+
+    /// [`Self::before_step`] for any number of lanes, compiled by its caller.
+    pub(crate) fn before_step_of_lanes(&mut self, model: &Model, state: &StateOf<L, R>) {
         let (scheme, steps_done) = (model.scheme(), state.steps_of_lanes());
         let before = state.motion(&steps_done);
         if self.keeps(model, state.step) {
@@ -175,7 +192,15 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
     }
 
     /// Adds the works of the step just done and, at an audit, evaluates the energies at the `t_n` of that step.
-    pub fn after_step(&mut self, model: &Model, drives: &[Drive; L], state: &StateOf<L, R>) {
+    pub fn after_step(&mut self, model: &Model, drives: &[Drive; L], state: &StateOf<L, R>)
+    where
+        R: InLanes<L>,
+    {
+        R::after_step(self, model, drives, state);
+    }
+
+    /// [`Self::after_step`] for any number of lanes, compiled by its caller.
+    pub(crate) fn after_step_of_lanes(&mut self, model: &Model, drives: &[Drive; L], state: &StateOf<L, R>) {
         let done = state.step - 1;
         let rates: [f64; L] = std::array::from_fn(|l| drives[l].rate);
         let both_rates = [&rates, &self.last_rates];

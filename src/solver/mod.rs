@@ -33,6 +33,7 @@
 #![warn(clippy::disallowed_methods)]
 
 pub mod body;
+mod compiled;
 mod drive;
 pub mod energy;
 mod error;
@@ -52,6 +53,7 @@ mod step;
 pub mod support;
 mod transfer;
 
+pub use compiled::InLanes;
 pub use drive::Drive;
 pub use error::SolverError;
 pub use interface::solve::RunNumber;
@@ -60,6 +62,7 @@ pub use number::Number;
 pub use scheme::TimeStep;
 pub use state::{State, StateOf};
 pub use step::step;
+pub(crate) use step::step_of_lanes;
 pub use transfer::PinMotion;
 
 /// Version of everything that can change the bits of a result. It is part of every job's key. Raise it with any

@@ -1,6 +1,7 @@
 //! What changes during a run.
 
 use super::body::pin::{History, Motion, NodeMotion};
+use super::compiled::InLanes;
 use super::field::FieldOf;
 use super::interface::Contacts;
 use super::interface::solve::{RunNumber, TargetState};
@@ -54,7 +55,15 @@ impl<const L: usize, R: RunNumber> StateOf<L, R> {
     ///
     /// # Panics
     /// If the target is an elastic disk and the precision is single.
-    pub fn at_rest(model: &Model) -> Self {
+    pub fn at_rest(model: &Model) -> Self
+    where
+        R: InLanes<L>,
+    {
+        R::at_rest(model)
+    }
+
+    /// [`Self::at_rest`] for any number of lanes, compiled by its caller.
+    pub(crate) fn lanes_at_rest(model: &Model) -> Self {
         let pin = model.pin();
         Self {
             step: 0,

@@ -1,5 +1,6 @@
 //! One time step of the β₂ method ([`scheme`](super::scheme)) with contact.
 
+use super::compiled::InLanes;
 use super::drive::Drive;
 use super::interface::solve::{RunNumber, StepData};
 use super::model::Model;
@@ -7,7 +8,16 @@ use super::state::StateOf;
 use super::support::Supported;
 
 /// Advances all lanes from `t_n` to `t_{n+1}`.
-pub fn step<const L: usize, R: RunNumber>(model: &Model, drives: &[Drive; L], state: &mut StateOf<L, R>) {
+pub fn step<const L: usize, R: InLanes<L>>(model: &Model, drives: &[Drive; L], state: &mut StateOf<L, R>) {
+    R::step(model, drives, state);
+}
+
+/// [`step`] for any number of lanes, compiled by its caller.
+pub(crate) fn step_of_lanes<const L: usize, R: RunNumber>(
+    model: &Model,
+    drives: &[Drive; L],
+    state: &mut StateOf<L, R>,
+) {
     let steps_done = state.steps_of_lanes();
     for lane in 0..L {
         state.load_n[lane] = drives[lane].load_n(steps_done[lane] as f64 * model.time_step_s());

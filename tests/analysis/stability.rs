@@ -1,12 +1,12 @@
 //! Eigenvalues of steady sliding beside a run.
 
 use super::signals::coarse;
-use std::sync::Arc;
-use tribosweep_mechanics::analysis::lanes::{AnyLanes, Lanes, LanesOf};
+use tribosweep_mechanics::analysis::lanes::{AnyLanes, one_lane};
+use tribosweep_mechanics::analysis::nested::Beginning;
 use tribosweep_mechanics::analysis::{
     AboveBand, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
 };
-use tribosweep_mechanics::solver::{Model, RunNumber};
+use tribosweep_mechanics::solver::Model;
 use tribosweep_mechanics::spec::{ClampSide, JobSpec, Precision, Shape, StabilityMethod};
 
 fn short(method: StabilityMethod) -> JobSpec {
@@ -20,24 +20,24 @@ fn short(method: StabilityMethod) -> JobSpec {
 #[test]
 fn a_checkpoint_carries_the_eigenvalues() {
     let spec = short(StabilityMethod::Simulate);
-    let model = Arc::new(Model::from_scene(&spec.scene, &spec.numerics).unwrap());
-    let finish = |lanes: &mut Lanes<1>| -> JobRecord {
+    let lane = || one_lane(Model::from_scene(&spec.scene, &spec.numerics).unwrap(), Precision::Double);
+    let finish = |mut lanes: Box<dyn AnyLanes>| -> JobRecord {
         loop {
             if let Some(ended) = lanes.advance(&mut |_| {}).pop() {
                 return ended.result.unwrap();
             }
         }
     };
-    let mut lanes = Lanes::<1>::new(Arc::clone(&model));
-    lanes.begin(0, 7, spec.clone()).unwrap();
+    let mut lanes = lane();
+    lanes.begin_from(0, 7, spec.clone(), Beginning::REST).unwrap();
     lanes.note(0, Noted { stability: SlidingStability::example(), grows: false });
     lanes.advance(&mut |_| {});
     let checkpoint = lanes.checkpoint(7).unwrap();
-    let whole = finish(&mut lanes);
+    let whole = finish(lanes);
     assert_eq!(whole.stability, Some(SlidingStability::example()));
-    let mut other = Lanes::<1>::new(model);
+    let mut other = lane();
     other.resume(0, 1, spec.clone(), &checkpoint).unwrap();
-    assert_eq!(finish(&mut other), whole);
+    assert_eq!(finish(other), whole);
     let plain = solve(&spec, &mut Unobserved).unwrap();
     assert_eq!(plain, JobRecord { stability: None, ..whole });
 }
@@ -58,14 +58,14 @@ fn some_jobs_always_run() {
 }
 
 /// The outcome of a job of stable sliding whose eigenvalues are noted before its run.
-fn outcome_with<R: RunNumber>(precision: Precision, grows: bool) -> Outcome {
+fn outcome_with(precision: Precision, grows: bool) -> Outcome {
     let mut spec = coarse();
     spec.scene.contact.mu = 0.2;
     spec.numerics.precision = precision;
     spec.run.limit_s = 0.02;
-    let model = Arc::new(Model::from_scene(&spec.scene, &spec.numerics).unwrap());
-    let mut lanes = LanesOf::<1, R>::new(model);
-    lanes.begin(0, 1, spec).unwrap();
+    let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
+    let mut lanes = one_lane(model, precision);
+    lanes.begin_from(0, 1, spec, Beginning::REST).unwrap();
     lanes.note(0, Noted { stability: SlidingStability::example(), grows });
     loop {
         if let Some(ended) = lanes.advance(&mut |_| {}).pop() {
@@ -79,9 +79,9 @@ fn outcome_with<R: RunNumber>(precision: Precision, grows: bool) -> Outcome {
 /// run decides.
 #[test]
 fn a_known_growth_is_not_hidden_by_rounding() {
-    assert_eq!(outcome_with::<f32>(Precision::Single, true), Outcome::NotPeriodic);
-    assert_eq!(outcome_with::<f32>(Precision::Single, false), Outcome::Decayed);
-    assert_eq!(outcome_with::<f64>(Precision::Double, true), Outcome::Decayed);
+    assert_eq!(outcome_with(Precision::Single, true), Outcome::NotPeriodic);
+    assert_eq!(outcome_with(Precision::Single, false), Outcome::Decayed);
+    assert_eq!(outcome_with(Precision::Double, true), Outcome::Decayed);
 }
 
 /// An observer that counts the steps that it needs.

@@ -30,10 +30,10 @@ use tribosweep_mechanics::solver::body::pin::{BlockMesh, PinMesh};
 use tribosweep_mechanics::solver::energy::{Energies, EnergyLedger};
 use tribosweep_mechanics::solver::material::Material;
 use tribosweep_mechanics::solver::support::{RockingWay, Support};
-use tribosweep_mechanics::solver::{Drive, Model, RunNumber, StateOf, step};
+use tribosweep_mechanics::solver::{Drive, InLanes, Model, StateOf, step};
 
 /// The numbers of a run's fields.
-pub trait Rounded: RunNumber {
+pub trait Rounded: InLanes<1> {
     /// Largest relative error of an operation.
     const EPSILON: f64;
 }

@@ -15,8 +15,8 @@ use tribosweep_mechanics::solver::interface::target::TargetDefinition;
 use tribosweep_mechanics::solver::support::clamp;
 use tribosweep_mechanics::solver::support::load;
 use tribosweep_mechanics::solver::{
-    Drive, Model, ModelDefinition, RunNumber, SolverError, State, StateOf, TimeStep, guard,
-    material::Material, step,
+    Drive, InLanes, Model, ModelDefinition, SolverError, State, StateOf, TimeStep, guard, material::Material,
+    step,
 };
 use tribosweep_mechanics::spec::{Clamp, Holder, JobSpec, TopFace};
 
@@ -34,7 +34,7 @@ fn run(spec: &JobSpec, interval: u64) -> (EnergyLedger<1>, u64) {
 }
 
 /// The same run with fields of the number type `R`.
-fn run_in<R: RunNumber>(spec: &JobSpec, interval: u64) -> (EnergyLedger<1, R>, u64) {
+fn run_in<R: InLanes<1>>(spec: &JobSpec, interval: u64) -> (EnergyLedger<1, R>, u64) {
     let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
     let drives = [Drive { law: Law::coulomb(0.5), rate: 1.2, force_n: 30.0, ramp_s: spec.scene.load.ramp_s }];
     let mut state = StateOf::at_rest(&model);
@@ -106,7 +106,7 @@ fn closes_to_rounding_in_single_precision() {
 /// both precisions. The work of the drive over an increment takes the speed of that step.
 #[test]
 fn closes_to_rounding_when_speed_and_load_change() {
-    fn residual<R: RunNumber>(beta2: f64) -> f64 {
+    fn residual<R: InLanes<1>>(beta2: f64) -> f64 {
         let mut spec = spec();
         spec.numerics.beta2 = beta2;
         let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();

@@ -16,9 +16,7 @@ use tribosweep_mechanics::solver::interface::law::Law;
 use tribosweep_mechanics::solver::interface::target::TargetDefinition;
 use tribosweep_mechanics::solver::support::clamp;
 use tribosweep_mechanics::solver::support::load;
-use tribosweep_mechanics::solver::{
-    Drive, Model, ModelDefinition, RunNumber, State, StateOf, TimeStep, step,
-};
+use tribosweep_mechanics::solver::{Drive, InLanes, Model, ModelDefinition, State, StateOf, TimeStep, step};
 use tribosweep_mechanics::spec::{Clamp, ClampSide, Holder, JobSpec, TopFace};
 
 fn small_model() -> Model {
@@ -219,7 +217,7 @@ fn lanes_are_independent_to_the_last_bit() {
     lanes_are_independent_in::<f32>(&model, &drives);
 }
 
-fn lanes_are_independent_in<R: RunNumber>(model: &Model, drives: &[Drive; 4]) {
+fn lanes_are_independent_in<R: InLanes<1> + InLanes<4>>(model: &Model, drives: &[Drive; 4]) {
     let mut together = StateOf::<4, R>::at_rest(model);
     let mut ledger = EnergyLedger::<4, R>::new(model, 16);
     let steps = 1500;
@@ -267,7 +265,7 @@ fn a_change_of_bits_raises_the_version() {
 }
 
 /// Hash of the fields after 2000 steps in one precision.
-fn hash_of_bits<R: RunNumber>(model: &Model) -> String {
+fn hash_of_bits<R: InLanes<1>>(model: &Model) -> String {
     let mut state = StateOf::<1, R>::at_rest(model);
     for _ in 0..2000 {
         step(model, &[DRIVE], &mut state);

@@ -17,8 +17,8 @@ fn spec(disk: DiskKind) -> JobSpec {
     spec.scene.pin.elements = [6, 8, 5];
     spec.scene.clamp.width_m = 0.002;
     spec.scene.disk.kind = disk;
-    spec.scene.disk.ring.element_size_m = 0.006;
-    spec.scene.disk.ring.coarse_element_size_m = 0.03;
+    spec.scene.disk.ring.element_size_m = 0.012;
+    spec.scene.disk.ring.coarse_element_size_m = 0.06;
     spec
 }
 
@@ -31,7 +31,7 @@ fn model(disk: DiskKind) -> Model {
 /// its initial gap moves like one that begins on the target: contact forces, gaps and increments are the same.
 #[test]
 fn a_pin_that_begins_lower_by_its_gap_moves_alike() {
-    for disk in [DiskKind::Rigid, DiskKind::Elastic] {
+    for (disk, steps) in [(DiskKind::Rigid, STEPS), (DiskKind::Elastic, STEPS / 4)] {
         let flat = model(disk);
         let raised = model(disk).with_initial_gaps(|_| SHIFT_M);
         let mut on_target = State::<1>::at_rest(&flat);
@@ -40,7 +40,7 @@ fn a_pin_that_begins_lower_by_its_gap_moves_alike() {
             lowered.u[3 * node + 2] = -SHIFT_M;
         }
         let mut closed = 0;
-        for n in 0..STEPS {
+        for n in 0..steps {
             step(&flat, &[DRIVE], &mut on_target);
             step(&raised, &[DRIVE], &mut lowered);
             for slave in 0..flat.slaves().len() {
@@ -66,7 +66,7 @@ fn a_pin_that_begins_lower_by_its_gap_moves_alike() {
                 closed += usize::from(exact[2] > 0.0);
             }
         }
-        assert!(closed > STEPS, "too few contacts: {closed}");
+        assert!(closed > steps, "too few contacts: {closed}");
     }
 }
 
