@@ -14,7 +14,7 @@ use super::step::step_of_lanes;
 pub trait InLanes<const L: usize>: RunNumber {
     /// [`StateOf::at_rest`].
     fn at_rest(model: &Model) -> StateOf<L, Self>;
-    /// [`step`](super::step()).
+    /// [`step`].
     fn step(model: &Model, drives: &[Drive; L], state: &mut StateOf<L, Self>);
     /// [`EnergyLedger::new`].
     fn ledger(model: &Model, interval: u64) -> EnergyLedger<L, Self>;
@@ -63,3 +63,40 @@ macro_rules! in_lanes {
 
 in_lanes!(f64: 1 2 4 8);
 in_lanes!(f32: 1 2 4 8);
+
+/// Advances all lanes from `t_n` to `t_{n+1}`.
+pub fn step<const L: usize, R: InLanes<L>>(model: &Model, drives: &[Drive; L], state: &mut StateOf<L, R>) {
+    R::step(model, drives, state);
+}
+
+impl<const L: usize, R: InLanes<L>> StateOf<L, R> {
+    /// All lanes at rest and undeformed.
+    ///
+    /// # Panics
+    /// If the target is an elastic disk and the precision is single.
+    pub fn at_rest(model: &Model) -> Self {
+        R::at_rest(model)
+    }
+}
+
+impl<const L: usize, R: InLanes<L>> EnergyLedger<L, R> {
+    /// A ledger that evaluates stored energies and damping every `interval` steps, from step 0 on.
+    ///
+    /// # Panics
+    /// If `interval` is zero.
+    pub fn new(model: &Model, interval: u64) -> Self {
+        R::ledger(model, interval)
+    }
+
+    /// Stores what the audit of the coming step needs of the state at `t_n`.
+    ///
+    /// All lanes count their steps together, so a job must begin at an audit.
+    pub fn before_step(&mut self, model: &Model, state: &StateOf<L, R>) {
+        R::before_step(self, model, state);
+    }
+
+    /// Adds the works of the step just done and, at an audit, evaluates the energies at the `t_n` of that step.
+    pub fn after_step(&mut self, model: &Model, drives: &[Drive; L], state: &StateOf<L, R>) {
+        R::after_step(self, model, drives, state);
+    }
+}

@@ -36,7 +36,6 @@
 use super::body::EnergySums;
 use super::body::pin::PinAudit;
 use super::body::ring::RingAudit;
-use super::compiled::InLanes;
 use super::drive::Drive;
 use super::interface::InterfaceWork;
 use super::interface::solve::RunNumber;
@@ -131,17 +130,6 @@ pub struct EnergyLedger<const L: usize, R: RunNumber = f64> {
 }
 
 impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
-    /// A ledger that evaluates stored energies and damping every `interval` steps, from step 0 on.
-    ///
-    /// # Panics
-    /// If `interval` is zero.
-    pub fn new(model: &Model, interval: u64) -> Self
-    where
-        R: InLanes<L>,
-    {
-        R::ledger(model, interval)
-    }
-
     /// [`Self::new`] for any number of lanes, compiled by its caller.
     pub(crate) fn of_lanes(model: &Model, interval: u64) -> Self {
         assert!(interval > 0, "an interval of at least one step");
@@ -166,16 +154,6 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
         &self.energies[lane]
     }
 
-    /// Stores what the audit of the coming step needs of the state at `t_n`.
-    ///
-    /// All lanes count their steps together, so a job must begin at an audit.
-    pub fn before_step(&mut self, model: &Model, state: &StateOf<L, R>)
-    where
-        R: InLanes<L>,
-    {
-        R::before_step(self, model, state);
-    }
-
     /// [`Self::before_step`] for any number of lanes, compiled by its caller.
     pub(crate) fn before_step_of_lanes(&mut self, model: &Model, state: &StateOf<L, R>) {
         let (scheme, steps_done) = (model.scheme(), state.steps_of_lanes());
@@ -189,14 +167,6 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
                 audit.begin(body, scheme, ring);
             }
         }
-    }
-
-    /// Adds the works of the step just done and, at an audit, evaluates the energies at the `t_n` of that step.
-    pub fn after_step(&mut self, model: &Model, drives: &[Drive; L], state: &StateOf<L, R>)
-    where
-        R: InLanes<L>,
-    {
-        R::after_step(self, model, drives, state);
     }
 
     /// [`Self::after_step`] for any number of lanes, compiled by its caller.

@@ -53,7 +53,7 @@ mod step;
 pub mod support;
 mod transfer;
 
-pub use compiled::InLanes;
+pub use compiled::{InLanes, step};
 pub use drive::Drive;
 pub use error::SolverError;
 pub use interface::solve::RunNumber;
@@ -61,7 +61,6 @@ pub use model::{Model, ModelDefinition};
 pub use number::Number;
 pub use scheme::TimeStep;
 pub use state::{State, StateOf};
-pub use step::step;
 pub(crate) use step::step_of_lanes;
 pub use transfer::PinMotion;
 

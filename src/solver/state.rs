@@ -1,7 +1,6 @@
 //! What changes during a run.
 
 use super::body::pin::{History, Motion, NodeMotion};
-use super::compiled::InLanes;
 use super::field::FieldOf;
 use super::interface::Contacts;
 use super::interface::solve::{RunNumber, TargetState};
@@ -51,18 +50,10 @@ pub(super) struct Workspace<const L: usize, R: RunNumber> {
 }
 
 impl<const L: usize, R: RunNumber> StateOf<L, R> {
-    /// All lanes at rest and undeformed.
+    /// All lanes at rest and undeformed. It is compiled by its caller, for any number of lanes.
     ///
     /// # Panics
-    /// If the target is an elastic disk and the precision is single.
-    pub fn at_rest(model: &Model) -> Self
-    where
-        R: InLanes<L>,
-    {
-        R::at_rest(model)
-    }
-
-    /// [`Self::at_rest`] for any number of lanes, compiled by its caller.
+    /// As [`Self::at_rest`].
     pub(crate) fn lanes_at_rest(model: &Model) -> Self {
         let pin = model.pin();
         Self {

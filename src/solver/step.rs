@@ -1,18 +1,12 @@
 //! One time step of the β₂ method ([`scheme`](super::scheme)) with contact.
 
-use super::compiled::InLanes;
 use super::drive::Drive;
 use super::interface::solve::{RunNumber, StepData};
 use super::model::Model;
 use super::state::StateOf;
 use super::support::Supported;
 
-/// Advances all lanes from `t_n` to `t_{n+1}`.
-pub fn step<const L: usize, R: InLanes<L>>(model: &Model, drives: &[Drive; L], state: &mut StateOf<L, R>) {
-    R::step(model, drives, state);
-}
-
-/// [`step`] for any number of lanes, compiled by its caller.
+/// Advances all lanes from `t_n` to `t_{n+1}`. It is compiled by its caller, for any number of lanes.
 pub(crate) fn step_of_lanes<const L: usize, R: RunNumber>(
     model: &Model,
     drives: &[Drive; L],
@@ -64,8 +58,8 @@ fn begin_load_strokes<const L: usize, R: RunNumber>(steps_done: &[u64; L], state
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::State;
     use crate::solver::interface::law::Law;
+    use crate::solver::{State, step};
     use crate::spec::JobSpec;
 
     /// Protects: the load of a step is that at its time t_n, not that of the step before or after.
