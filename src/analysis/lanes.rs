@@ -28,9 +28,6 @@ use std::sync::Arc;
 /// does not suppress.
 pub const AUDIT_INTERVAL: u64 = 16;
 
-/// Up to `L` jobs of one model in double precision.
-pub type Lanes<const L: usize> = LanesOf<L, f64>;
-
 /// Up to `L` jobs of one model, with fields of the number type `R`.
 pub struct LanesOf<const L: usize, R: RunNumber> {
     model: Arc<Model>,
