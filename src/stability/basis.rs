@@ -7,7 +7,7 @@
 use super::coarse;
 use super::separable::Separable;
 use super::solve::Bilateral;
-use super::space::{Contact, Elasticity, LANES, Space, block_of};
+use super::space::{Contact, Elasticity, LANES, SlidingNode, Space, block_of};
 use crate::solver::Model;
 use crate::solver::body::pin::BlockMesh;
 use faer::{Mat, Side};
@@ -16,7 +16,7 @@ use faer::{Mat, Side};
 const FREE: usize = 100;
 /// Modes without sideways slip.
 const LOCKED: usize = 60;
-/// Patterns of tangential forces in x and in y: products of this many cosines.
+/// Patterns of forces in x and in y: products of this many cosines.
 const PATTERNS: [usize; 2] = [5, 6];
 /// Up to this number of degrees of freedom, the basis is complete.
 const COMPLETE: usize = 500;
@@ -40,7 +40,7 @@ pub struct Basis {
     pub normal: Mat<f64>,
     /// Frequency \[Hz\] up to which the basis has the modes.
     pub band_hz: f64,
-    /// Whether the basis has all modes of the mesh.
+    /// Whether the basis has all modes of the mesh with all slave nodes held in z.
     pub is_complete: bool,
 }
 
@@ -80,7 +80,11 @@ impl Basis {
         if !is_complete {
             let contact = Contact { in_contact: &all_in_contact, is_locked_sideways: false };
             let bilateral = Bilateral { space, separable, contact };
-            for forces in patterns(block_of(model), space).chunks(LANES) {
+            let tangential: Vec<Vec<f64>> = patterns(block_of(model), space.sliding())
+                .into_iter()
+                .flat_map(|values| [0, 1].map(|c| spread(space, &values, c)))
+                .collect();
+            for forces in tangential.chunks(LANES) {
                 let views: Vec<&[f64]> = forces.iter().map(Vec::as_slice).collect();
                 let mut force = space.gather(&views);
                 space.project(contact, &mut force);
@@ -191,24 +195,27 @@ pub fn sum_of(a: &[f64; 3], b: &[f64; 3], masses: &[f64; 3]) -> f64 {
     x * a[0] * b[0] + y * a[1] * b[1] + z * a[2] * b[2]
 }
 
-/// Tangential forces on the contact face: products of cosines over x and y.
-fn patterns(mesh: &BlockMesh, space: &Space) -> Vec<Vec<f64>> {
+/// Forces on slave nodes, as pressures on the contact face: products of cosines over x and y.
+pub fn patterns(mesh: &BlockMesh, slaves: &[SlidingNode]) -> Vec<Vec<f64>> {
     let [lx, ly, _] = mesh.size_m();
-    let mut all = Vec::new();
-    for i in 0..PATTERNS[0] {
-        for j in 0..PATTERNS[1] {
-            for c in 0..2 {
-                let mut force = vec![0.0; space.len()];
-                for slave in space.sliding() {
-                    let [x, y, _] = mesh.coordinates_m(slave.node);
-                    let wave = |n: usize, at: f64| libm::cos(n as f64 * std::f64::consts::PI * (at + 0.5));
-                    force[3 * slave.node + c] = slave.area_m2 * wave(i, x / lx) * wave(j, y / ly);
-                }
-                all.push(force);
-            }
-        }
+    let wave = |n: usize, at: f64| libm::cos(n as f64 * std::f64::consts::PI * (at + 0.5));
+    let pattern = |i: usize, j: usize| {
+        let force = |slave: &SlidingNode| {
+            let [x, y, _] = mesh.coordinates_m(slave.node);
+            slave.area_m2 * wave(i, x / lx) * wave(j, y / ly)
+        };
+        slaves.iter().map(force).collect()
+    };
+    (0..PATTERNS[0]).flat_map(|i| (0..PATTERNS[1]).map(move |j| (i, j))).map(|(i, j)| pattern(i, j)).collect()
+}
+
+/// A component of all slave nodes as a vector of the pin.
+fn spread(space: &Space, values: &[f64], component: usize) -> Vec<f64> {
+    let mut vector = vec![0.0; space.len()];
+    for (slave, value) in space.sliding().iter().zip(values) {
+        vector[3 * slave.node + component] = *value;
     }
-    all
+    vector
 }
 
 /// The frequency \[Hz\] of a vibration.

@@ -29,11 +29,16 @@ impl Dashpot {
 }
 
 impl Dashpots {
-    /// Σ c w wᵀ in the basis.
-    pub fn in_basis(&self, basis: &Basis) -> Mat<f64> {
-        let count = self.all.len();
-        let rows = Mat::from_fn(count, basis.len(), |i, j| self.all[i].of(|dof| basis.vectors[(dof, j)]));
-        let weighted = Mat::from_fn(count, basis.len(), |i, j| self.all[i].coefficient_n_s_m * rows[(i, j)]);
+    /// Σ c w wᵀ in the basis with `added` vectors.
+    pub fn in_basis(&self, basis: &Basis, added: &[Vec<f64>]) -> Mat<f64> {
+        let (count, r) = (self.all.len(), basis.len());
+        let velocity = |i: usize, j: usize| match j.checked_sub(r) {
+            None => self.all[i].of(|dof| basis.vectors[(dof, j)]),
+            Some(own) => self.all[i].of(|dof| added[own][dof]),
+        };
+        let rows = Mat::from_fn(count, r + added.len(), velocity);
+        let weighted =
+            Mat::from_fn(count, r + added.len(), |i, j| self.all[i].coefficient_n_s_m * rows[(i, j)]);
         weighted.transpose() * &rows
     }
 

@@ -1,16 +1,24 @@
-//! Vectors that are added to the basis for some modes of one point.
+//! Vectors that are added to the basis for one equilibrium, or for some modes of one point.
 
-use super::basis::{Basis, sum_of};
+use super::basis::{Basis, patterns, sum_of};
 use super::dashpots::Dashpots;
 use super::pencil::{Pencil, Sampling};
-use super::space::{Elasticity, LANES, Space, Vectors};
+use super::space::{Elasticity, LANES, Space, Vectors, block_of};
 use super::vibration::Vibration;
 use faer::Mat;
 
 /// Smallest share (of squares) of a vector that is not in the others.
 const INDEPENDENT: f64 = 1e-10;
 
-/// Vectors that were added to the basis for some modes of one point.
+/// Up to this number of lifted nodes, each has a force of its own.
+const SINGLE: usize = 30;
+/// Smallest share (of squares) of a pattern of forces on lifted nodes that is not in the others.
+const INDEPENDENT_FORCE: f64 = 1e-6;
+/// Steps of conjugate gradients for the response to forces on lifted nodes.
+const STEPS: usize = 8;
+
+/// Vectors that were added to the basis for one equilibrium, or for some modes of one point.
+#[derive(Debug, Clone)]
 pub struct Extension {
     /// Orthogonal to each other in the mass.
     pub vectors: Vec<Vec<f64>>,
@@ -23,6 +31,27 @@ pub struct Extension {
 impl Extension {
     pub fn none() -> Self {
         Self { vectors: Vec::new(), forward: Vec::new(), sideways: Vec::new(), normal: Vec::new() }
+    }
+
+    /// Adds the responses of the pin to normal forces on the nodes that are lifted at this equilibrium, which the basis holds in z. Without
+    /// them it lacks their motion, and modes in which they move. Gives P(λ) in the larger basis. A complete basis stays complete.
+    pub fn add_lifted(
+        &mut self,
+        basis: &Basis,
+        vibration: &Vibration<'_>,
+        elasticity: &mut Elasticity<'_>,
+        mut pencil: Pencil,
+    ) -> Pencil {
+        let bilateral = &vibration.bilateral;
+        let space = bilateral.space;
+        for forces in forces_on_lifted(basis, space, elasticity, bilateral.contact.in_contact).chunks(LANES) {
+            let views: Vec<&[f64]> = forces.iter().map(Vec::as_slice).collect();
+            let force = space.gather(&views);
+            let mut response = space.zeros();
+            bilateral.solve(elasticity, &force, &mut response, STEPS);
+            pencil = self.extend(basis, vibration, elasticity, &pencil, &[response], forces.len());
+        }
+        pencil
     }
 
     /// Adds the first `lanes` vectors, made orthogonal in the mass to the basis and to those that were added before.
@@ -53,15 +82,15 @@ impl Extension {
         }
     }
 
-    /// Adds the lanes of `responses`, and gives P(λ) in the larger basis.
+    /// Adds the first `lanes` vectors of each of `responses`, and gives P(λ) in the larger basis.
     pub fn extend(
         &mut self,
         basis: &Basis,
         vibration: &Vibration<'_>,
         elasticity: &mut Elasticity<'_>,
         before: &Pencil,
-        responses: &[Vectors; 2],
-        pairs: usize,
+        responses: &[Vectors],
+        lanes: usize,
     ) -> Pencil {
         let space = vibration.bilateral.space;
         let on = vibration.bilateral.contact.in_contact;
@@ -70,7 +99,7 @@ impl Extension {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let first = self.vectors.len();
         for response in responses {
-            self.add_independent(space, basis, response, 2 * pairs);
+            self.add_independent(space, basis, response, lanes);
         }
         let added = self.vectors.len() - first;
         let size = old + added;
@@ -181,6 +210,53 @@ impl Extension {
         };
         vibration.viscous.iter().zip(&before.viscous).map(enlarge).collect()
     }
+}
+
+/// Normal forces on the lifted nodes: on each alone, or in independent patterns.
+fn forces_on_lifted(
+    basis: &Basis,
+    space: &Space,
+    elasticity: &Elasticity<'_>,
+    in_contact: &[bool],
+) -> Vec<Vec<f64>> {
+    let lifted: Vec<usize> = (0..in_contact.len()).filter(|&i| !in_contact[i]).collect();
+    let own: Vec<Vec<f64>> = if basis.is_complete || lifted.len() <= SINGLE {
+        (0..lifted.len()).map(|i| (0..lifted.len()).map(|j| f64::from(u8::from(i == j))).collect()).collect()
+    } else {
+        let slaves: Vec<_> = lifted.iter().map(|&i| space.sliding()[i]).collect();
+        independent(patterns(block_of(elasticity.model()), &slaves))
+    };
+    let spread = |values: Vec<f64>| {
+        let mut force = vec![0.0; space.len()];
+        for (&i, value) in lifted.iter().zip(values) {
+            force[3 * space.sliding()[i].node + 2] = value;
+        }
+        force
+    };
+    own.into_iter().map(spread).collect()
+}
+
+/// Orthonormal combinations of vectors, without those that hold almost nothing of their own.
+fn independent(vectors: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut kept: Vec<Vec<f64>> = Vec::new();
+    for mut x in vectors {
+        let whole = dot(&x, &x);
+        for _ in 0..2 {
+            for v in &kept {
+                let share = dot(v, &x);
+                for (x, v) in x.iter_mut().zip(v) {
+                    *x -= share * v;
+                }
+            }
+        }
+        let left = dot(&x, &x);
+        if left > INDEPENDENT_FORCE * whole {
+            let norm = left.sqrt();
+            kept.push(x.into_iter().map(|x| x / norm).collect());
+        }
+    }
+    kept
 }
 
 fn column_dot(masses: &[f64], x: &Mat<f64>, column: usize) -> f64 {

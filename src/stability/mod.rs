@@ -295,7 +295,10 @@ impl ReducedStructure {
         let friction = SlidingFriction::new(&self.space.speeds_per_rate(), drive)?;
         let equilibrium =
             UnitEquilibrium::new(model, &self.space, &self.separable, &friction, drive.force_n)?;
-        let friction = Arc::new(Friction::new(&self.space, &self.basis, friction, equilibrium));
+        let mut elasticity = Elasticity::new(model, &self.space);
+        let friction =
+            Friction::new(&mut elasticity, &self.space, &self.separable, &self.basis, friction, equilibrium);
+        let friction = Arc::new(friction);
         let mut all = lock();
         if all.len() == REMEMBERED {
             all.remove(0);

@@ -6,6 +6,7 @@ use super::equilibrium::UnitEquilibrium;
 use super::extension::Extension;
 use super::friction::SlidingFriction;
 use super::pencil::{Clock, Pair, Pencil};
+use super::separable::Separable;
 use super::sliding::JUDGED;
 use super::solve::Bilateral;
 use super::space::{self, Contact, Elasticity, SlidingNode, Space, Vectors};
@@ -34,9 +35,11 @@ const CANDIDATES: usize = 12;
 pub struct Friction {
     pub coefficients: SlidingFriction,
     pub equilibrium: UnitEquilibrium,
-    /// K − μ AᵀB in the basis.
+    /// What the basis lacks where nodes are lifted.
+    lifted: Extension,
+    /// K − μ AᵀB in the basis and `lifted`.
     stiffness: Mat<f64>,
-    /// D in the basis, for a load of 1 N and a drive's rate of 1.
+    /// D in the basis and `lifted`, for a load of 1 N and a drive's rate of 1.
     sideways: Mat<f64>,
     /// μN₀/|v| of each slave node, for a load of 1 N and a drive's rate of 1.
     sideways_of_nodes: Vec<f64>,
@@ -82,7 +85,9 @@ impl Candidate {
 
 impl Friction {
     pub fn new(
+        elasticity: &mut Elasticity<'_>,
         space: &Space,
+        separable: &Separable,
         basis: &Basis,
         coefficients: SlidingFriction,
         equilibrium: UnitEquilibrium,
@@ -101,7 +106,19 @@ impl Friction {
             Mat::from_fn(basis.len(), basis.len(), |i, j| basis.stiffness[(i, j)] - follow[(i, j)]);
         let sideways =
             rows(&basis.sideways, &|i| sideways_of_nodes[i]).transpose() * rows(&basis.sideways, &|_| 1.0);
-        Self { coefficients, equilibrium, stiffness, sideways, sideways_of_nodes, sector: OnceLock::new() }
+        let vibration = Vibration {
+            bilateral: Bilateral { space, separable, contact: contact(&equilibrium) },
+            friction: &coefficients,
+            sideways_n_s_m: &sideways_of_nodes,
+            viscous: &[],
+            damping_s: 0.0,
+            alpha_r_per_s: 0.0,
+        };
+        let pencil = Pencil { stiffness, sideways, viscous: Vec::new(), damping_s: 0.0, alpha_r_per_s: 0.0 };
+        let mut lifted = Extension::none();
+        let Pencil { stiffness, sideways, .. } = lifted.add_lifted(basis, &vibration, elasticity, pencil);
+        let sector = OnceLock::new();
+        Self { coefficients, equilibrium, lifted, stiffness, sideways, sideways_of_nodes, sector }
     }
 
     /// The dampers that stand for the slope of the law, for this load \[N\].
@@ -207,9 +224,13 @@ struct Seen {
 impl Point<'_> {
     /// The leading modes.
     pub fn modes(&self, elasticity: &mut Elasticity<'_>, count: usize, accuracy: Accuracy) -> Vec<FullMode> {
-        let r = self.basis.len();
+        let lifted = &self.friction.lifted;
+        let r = self.basis.len() + lifted.vectors.len();
         let sideways = Mat::from_fn(r, r, |i, j| self.load_over_rate * self.friction.sideways[(i, j)]);
-        let viscous = self.viscous.iter().map(|dashpots| (dashpots.sampling, dashpots.in_basis(self.basis)));
+        let viscous = self
+            .viscous
+            .iter()
+            .map(|dashpots| (dashpots.sampling, dashpots.in_basis(self.basis, &lifted.vectors)));
         let pencil = Pencil {
             stiffness: self.friction.stiffness.clone(),
             sideways,
@@ -247,7 +268,7 @@ impl Point<'_> {
         for group in found.chunks(PAIRS) {
             let pairs: Vec<Pair> =
                 group.iter().map(|value| pencil.polish(Clock::Continuous, *value, None)).collect();
-            let seen = self.look(&vibration, elasticity, &Extension::none(), &pencil, &pairs);
+            let seen = self.look(&vibration, elasticity, lifted, &pencil, &pairs);
             modes.extend(pairs.into_iter().enumerate().map(|(at, pair)| Candidate {
                 pair,
                 residual: seen.relative[at],
@@ -282,7 +303,7 @@ impl Point<'_> {
         for group in modes.chunks_mut(PAIRS) {
             let pairs: Vec<Pair> = group.iter().map(|mode| mode.pair.clone()).collect();
             let right = accuracy.with_shapes.then(|| {
-                let [right, _] = self.expand(&Extension::none(), &pairs);
+                let [right, _] = self.expand(lifted, &pairs);
                 right
             });
             finished.extend(group.iter_mut().enumerate().map(|(at, mode)| {
@@ -309,7 +330,7 @@ impl Point<'_> {
         mut pairs: Vec<Pair>,
         accuracy: Accuracy,
     ) -> Vec<FullMode> {
-        let mut extension = Extension::none();
+        let mut extension = self.friction.lifted.clone();
         let mut pencil = pencil.clone();
         for round in 0..=accuracy.rounds {
             let Seen { right, forces, relative, errors_per_s } =
@@ -324,7 +345,8 @@ impl Point<'_> {
                 return pairs.iter().enumerate().map(report).collect();
             }
             let responses = self.responses(vibration, elasticity, forces, pairs.len());
-            pencil = extension.extend(self.basis, vibration, elasticity, &pencil, &responses, pairs.len());
+            let lanes = 2 * pairs.len();
+            pencil = extension.extend(self.basis, vibration, elasticity, &pencil, &responses, lanes);
             pairs = pencil.continued(&pairs);
         }
         unreachable!("the last round returns")

@@ -217,6 +217,11 @@ impl<'a, const L: usize> Elasticity<'a, L> {
         Self { model, space, scratch: model.pin().operator().scratch(model.mesh().layout(), L) }
     }
 
+    /// The model.
+    pub fn model(&self) -> &'a Model {
+        self.model
+    }
+
     /// y = K x, reactions of constraints included.
     pub fn product(&mut self, x: &Field<L>, y: &mut Field<L>) {
         self.model.pin().operator().tangent(x, y, &mut self.scratch);

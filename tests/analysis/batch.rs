@@ -93,16 +93,26 @@ fn companions_change_nothing_after_a_coarser_mesh() {
     }
 }
 
-/// Protects: the same with every friction law, in both precisions and with an elastic disk. One of them carries a state from
-/// step to step, which lanes and checkpoints must keep.
+/// Protects: the same with every friction law. One of them carries a state from step to step, which lanes and checkpoints must keep, also
+/// with an elastic disk.
 #[test]
 fn companions_and_interruptions_change_nothing_with_other_laws() {
-    for law in FrictionLaw::VARIANTS {
-        for (disk, precision) in [
-            (DiskKind::Rigid, Precision::Double),
-            (DiskKind::Rigid, Precision::Single),
-            (DiskKind::Elastic, Precision::Double),
-        ] {
+    nothing_changes_with_laws(FrictionLaw::VARIANTS, &[(DiskKind::Rigid, Precision::Double)]);
+    nothing_changes_with_laws(&[FrictionLaw::PrakashClifton], &[(DiskKind::Elastic, Precision::Double)]);
+    nothing_changes_with_laws(&[FrictionLaw::StaticKinetic], &[(DiskKind::Rigid, Precision::Single)]);
+}
+
+/// Protects: the same with every law in both precisions and with an elastic disk.
+#[test]
+#[ignore = "every law with eleven jobs on an elastic disk"]
+fn companions_and_interruptions_change_nothing_with_any_law() {
+    let others = [(DiskKind::Rigid, Precision::Single), (DiskKind::Elastic, Precision::Double)];
+    nothing_changes_with_laws(FrictionLaw::VARIANTS, &others);
+}
+
+fn nothing_changes_with_laws(laws: &[FrictionLaw], scenes: &[(DiskKind, Precision)]) {
+    for law in laws {
+        for &(disk, precision) in scenes {
             if precision == Precision::Single && *law == FrictionLaw::PrakashClifton {
                 assert!(jobs(disk, precision).pop().is_some_and(|mut job| {
                     job.scene.contact.law = *law;
@@ -131,17 +141,17 @@ fn companions_and_interruptions_change_nothing_with_other_laws() {
 /// Protects: the same with general meshes, whose nodes are in lines that do not fill their vectors, and with damping in proportion to the mass.
 #[test]
 fn companions_and_interruptions_change_nothing_on_general_meshes() {
-    nothing_changes_on_general_meshes(&PAUSES[..1]);
+    nothing_changes_on_general_meshes(0.0015, &PAUSES[..1]);
 }
 
-/// Protects: the same with fewer interruptions, of which each finds another step.
+/// Protects: the same in longer runs, also with fewer interruptions, of which each finds another step.
 #[test]
 #[ignore = "four kinds of general meshes, each run again for each interval"]
 fn rarer_interruptions_change_nothing_on_general_meshes() {
-    nothing_changes_on_general_meshes(&PAUSES[1..]);
+    nothing_changes_on_general_meshes(0.003, &PAUSES);
 }
 
-fn nothing_changes_on_general_meshes(pauses: &[usize]) {
+fn nothing_changes_on_general_meshes(limit_s: f64, pauses: &[usize]) {
     for (disk, precision, strains) in [
         (DiskKind::Rigid, Precision::Double, Strains::Small),
         (DiskKind::Rigid, Precision::Double, Strains::Finite),
@@ -176,7 +186,7 @@ fn nothing_changes_on_general_meshes(pauses: &[usize]) {
                     .then(|| Plasticity { yield_stress_pa: Some(3.0e5), ..Plasticity::default() }),
             }];
             job.scene.clamp.side = ClampSide::WholeTop;
-            job.run.limit_s = job.run.limit_s.min(0.003);
+            job.run.limit_s = job.run.limit_s.min(limit_s);
             if disk == DiskKind::Rigid {
                 job.numerics.alpha_r_per_s = Some(1.0e3);
             }

@@ -197,10 +197,22 @@ fn modes_on_a_finer_mesh_are_those_of_the_unreduced_problem() {
     compare(&different([[4, 5, 4], [3, 4, 3], [5, 6, 4]]));
 }
 
-/// Protects: as above, with the whole top clamped, strong damping and many lifted nodes.
+/// Protects: as above, with the whole top clamped, strong damping and many lifted nodes. Two modes of this mesh grow, and in one of them
+/// mainly the lifted nodes move.
 #[test]
 fn no_mode_is_lost_in_its_correction() {
-    let mut whole_top = scene([6, 8, 5], 0.002, 0.5, 100.0);
+    no_mode_is_lost_on([5, 6, 4]);
+}
+
+/// Protects: the same on a finer mesh.
+#[test]
+#[ignore = "eigenvalues of dense matrices of 1000 rows"]
+fn no_mode_is_lost_in_its_correction_on_a_finer_mesh() {
+    no_mode_is_lost_on([6, 8, 5]);
+}
+
+fn no_mode_is_lost_on(elements: [usize; 3]) {
+    let mut whole_top = scene(elements, 0.012 / elements[0] as f64, 0.5, 100.0);
     whole_top.scene.clamp.side = ClampSide::WholeTop;
     whole_top.numerics.beta_r_s = 2.0e-7;
     compare(&[whole_top]);
@@ -273,14 +285,14 @@ fn the_equilibrium_solves_the_complementarity_problem() {
 /// Protects: frequencies and growth rates are those of an independent dense solver, to the digits that it gave.
 #[test]
 fn modes_are_those_of_an_independent_solver() {
-    are_those_of_an_independent_solver(&[(0.1, 35.0, 3_612.0, -233.0), (0.3, 35.0, 15_959.0, 876.6)]);
+    are_those_of_an_independent_solver(&[(0.3, 35.0, 15_959.0, 876.6)]);
 }
 
-/// Protects: the same at low speed.
+/// Protects: the same at a low friction coefficient, at high and low speed.
 #[test]
-#[ignore = "a third point with all its modes"]
-fn modes_at_low_speed_are_those_of_an_independent_solver() {
-    are_those_of_an_independent_solver(&[(0.1, 2.0, 15_281.0, -828.9)]);
+#[ignore = "two more points, each with all its modes"]
+fn stable_modes_are_those_of_an_independent_solver() {
+    are_those_of_an_independent_solver(&[(0.1, 35.0, 3_612.0, -233.0), (0.1, 2.0, 15_281.0, -828.9)]);
 }
 
 fn are_those_of_an_independent_solver(points: &[(f64, f64, f64, f64)]) {
@@ -313,18 +325,19 @@ fn points_do_not_depend_on_each_other() {
 /// the threshold. The factor of two is what was found to be left over 107 modes.
 #[test]
 fn growth_rates_are_as_exact_as_stated() {
-    are_as_exact_as_stated(&[(0.2, 7.0)]);
+    are_as_exact_as_stated(&[ClampSide::TrailingEnd], &[(0.2, 7.0)]);
 }
 
-/// Protects: the same at more points.
+/// Protects: the same with another clamp and at more points.
 #[test]
-#[ignore = "four more points, each with all its modes"]
+#[ignore = "five more points, each with all its modes"]
 fn growth_rates_are_as_exact_as_stated_at_more_points() {
-    are_as_exact_as_stated(&[(0.1, 35.0), (0.2, 35.0)]);
+    are_as_exact_as_stated(&[ClampSide::InnerSide], &[(0.2, 7.0)]);
+    are_as_exact_as_stated(&[ClampSide::InnerSide, ClampSide::TrailingEnd], &[(0.1, 35.0), (0.2, 35.0)]);
 }
 
-fn are_as_exact_as_stated(points: &[(f64, f64)]) {
-    for side in [ClampSide::InnerSide, ClampSide::TrailingEnd] {
+fn are_as_exact_as_stated(sides: &[ClampSide], points: &[(f64, f64)]) {
+    for &side in sides {
         for &(mu, omega_rpm) in points {
             let mut spec = scene([8, 10, 7], 0.0025, mu, omega_rpm);
             spec.scene.clamp.side = side;
