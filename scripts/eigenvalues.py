@@ -370,7 +370,8 @@ A growth rate counts as negative only if it is so by more than its error, in con
 The error is estimated from the residuals of the right and the left eigenvector in the full problem. A mode is corrected only
 until its sign is clear, and a job with a mode that clearly grows is simulated without further corrections.
 
-The basis has the modes of the pin up to a frequency, its *band*, and near the end of the band it has them badly. So modes are
+The basis holds all nodes of the contact face in z. Where nodes are lifted it also has the responses to forces on them, because a mode may
+be mainly their motion. The basis has the modes of the pin up to a frequency, its *band*, and near the end of the band it has them badly. So modes are
 judged one by one up to 85 % of the band. A job is decided only if more than that is known [above it](#what-is-known-above-the-band).
 
 A job that [starts from a coarser mesh](../solving.md#a-start-from-a-coarser-mesh) is judged after its run there, and only if that run

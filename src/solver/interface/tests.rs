@@ -31,43 +31,54 @@ fn model(disk: DiskKind) -> Model {
 /// its initial gap moves like one that begins on the target: contact forces, gaps and increments are the same.
 #[test]
 fn a_pin_that_begins_lower_by_its_gap_moves_alike() {
-    for (disk, steps) in [(DiskKind::Rigid, STEPS), (DiskKind::Elastic, STEPS / 4)] {
-        let flat = model(disk);
-        let raised = model(disk).with_initial_gaps(|_| SHIFT_M);
-        let mut on_target = State::<1>::at_rest(&flat);
-        let mut lowered = State::<1>::at_rest(&raised);
-        for node in 0..raised.mesh().node_count() {
-            lowered.u[3 * node + 2] = -SHIFT_M;
-        }
-        let mut closed = 0;
-        for n in 0..steps {
-            step(&flat, &[DRIVE], &mut on_target);
-            step(&raised, &[DRIVE], &mut lowered);
-            for slave in 0..flat.slaves().len() {
-                let [found, exact] = [&lowered, &on_target].map(|state| state.contacts.force_of(slave, 0));
-                // The rounding errors of the displacements have the size of the shift. A stiffness m/Δt² of 10⁷ N/m
-                // turns them into forces, and they accumulate over the steps.
-                let stiffness = flat.slaves()[slave].mass_kg / flat.time_step_s().powi(2);
-                let rounding = 8.0 * (n + 1) as f64 * f64::EPSILON * SHIFT_M * stiffness;
-                for c in 0..3 {
-                    assert!(
-                        (found[c] - exact[c]).abs() <= rounding,
-                        "{disk:?}, step {n}: {found:?}, {exact:?}"
-                    );
-                }
-                let lengths_m = |state: &State<1>| {
-                    let [x, y, z] = state.contacts.increment_of(slave, 0);
-                    [state.contacts.gap_of(slave, 0), x, y, z]
-                };
-                for (found, exact) in lengths_m(&lowered).into_iter().zip(lengths_m(&on_target)) {
-                    let rounding = 8.0 * (n + 1) as f64 * f64::EPSILON * SHIFT_M;
-                    assert!((found - exact).abs() <= rounding, "{disk:?}, step {n}: {found:e}, {exact:e}");
-                }
-                closed += usize::from(exact[2] > 0.0);
-            }
-        }
-        assert!(closed > steps, "too few contacts: {closed}");
+    moves_alike(&spec(DiskKind::Rigid), STEPS);
+    moves_alike(&spec(DiskKind::Elastic), STEPS / 4);
+}
+
+/// Protects: the same on a finer disk in a longer run.
+#[test]
+#[ignore = "an elastic disk of 6 mm without optimization"]
+fn a_pin_that_begins_lower_moves_alike_on_a_finer_disk() {
+    let mut spec = spec(DiskKind::Elastic);
+    spec.scene.disk.ring.element_size_m = 0.006;
+    spec.scene.disk.ring.coarse_element_size_m = 0.03;
+    moves_alike(&spec, STEPS);
+}
+
+fn moves_alike(spec: &JobSpec, steps: usize) {
+    let disk = spec.scene.disk.kind;
+    let build = || Model::from_scene(&spec.scene, &spec.numerics).unwrap();
+    let (flat, raised) = (build(), build().with_initial_gaps(|_| SHIFT_M));
+    let mut on_target = State::<1>::at_rest(&flat);
+    let mut lowered = State::<1>::at_rest(&raised);
+    for node in 0..raised.mesh().node_count() {
+        lowered.u[3 * node + 2] = -SHIFT_M;
     }
+    let mut closed = 0;
+    for n in 0..steps {
+        step(&flat, &[DRIVE], &mut on_target);
+        step(&raised, &[DRIVE], &mut lowered);
+        for slave in 0..flat.slaves().len() {
+            let [found, exact] = [&lowered, &on_target].map(|state| state.contacts.force_of(slave, 0));
+            // The rounding errors of the displacements have the size of the shift. A stiffness m/Δt² of 10⁷ N/m
+            // turns them into forces, and they accumulate over the steps.
+            let stiffness = flat.slaves()[slave].mass_kg / flat.time_step_s().powi(2);
+            let rounding = 8.0 * (n + 1) as f64 * f64::EPSILON * SHIFT_M * stiffness;
+            for c in 0..3 {
+                assert!((found[c] - exact[c]).abs() <= rounding, "{disk:?}, step {n}: {found:?}, {exact:?}");
+            }
+            let lengths_m = |state: &State<1>| {
+                let [x, y, z] = state.contacts.increment_of(slave, 0);
+                [state.contacts.gap_of(slave, 0), x, y, z]
+            };
+            for (found, exact) in lengths_m(&lowered).into_iter().zip(lengths_m(&on_target)) {
+                let rounding = 8.0 * (n + 1) as f64 * f64::EPSILON * SHIFT_M;
+                assert!((found - exact).abs() <= rounding, "{disk:?}, step {n}: {found:e}, {exact:e}");
+            }
+            closed += usize::from(exact[2] > 0.0);
+        }
+    }
+    assert!(closed > steps, "too few contacts: {closed}");
 }
 
 /// Protects: the increments of a node do not contain its initial gap, from the first step on and on both kinds of target.
