@@ -71,8 +71,9 @@ const PIN_NODE_BYTES: [f64; 2] = [90.0, 135.0];
 const DISK_NODE_BYTES: [f64; 2] = [1200.0, 400.0];
 
 /// Memory that complex modes of steady sliding take \[byte\] for each node of the pin: measured peaks of 18 to 20 kB for
-/// meshes from 12 × 15 × 10 to 36 × 45 × 30 elements. Threads share most of it.
-const MODES_NODE_BYTES: f64 = 19.0e3;
+/// meshes from 12 × 15 × 10 to 36 × 45 × 30 elements without lifted nodes, and up to 30 vectors of 24 bytes in each of the 16 remembered
+/// equilibria with lifted nodes. Threads share most of it.
+const MODES_NODE_BYTES: f64 = 31.0e3;
 
 /// Memory of a job's detection \[byte\] for each step of its decay observation.
 const OBSERVED_STEP_BYTES: f64 = 200.0;

@@ -38,7 +38,7 @@ pub struct Basis {
     pub sideways: Mat<f64>,
     /// Normal contact force, slave node → vector.
     pub normal: Mat<f64>,
-    /// Frequency \[Hz\] up to which the basis has the modes.
+    /// Frequency \[Hz\] up to which the basis has the modes with all slave nodes held in z. Those with many lifted nodes it has approximately.
     pub band_hz: f64,
     /// Whether the basis has all modes of the mesh with all slave nodes held in z.
     pub is_complete: bool,

@@ -34,7 +34,8 @@ impl Extension {
     }
 
     /// Adds the responses of the pin to normal forces on the nodes that are lifted at this equilibrium, which the basis holds in z. Without
-    /// them it lacks their motion, and modes in which they move. Gives P(λ) in the larger basis. A complete basis stays complete.
+    /// them the basis lacks their motion, and modes in which they move. Gives P(λ) in the larger basis. A complete basis stays complete if every
+    /// lifted node adds a vector.
     pub fn add_lifted(
         &mut self,
         basis: &Basis,
@@ -46,7 +47,8 @@ impl Extension {
         let space = bilateral.space;
         for forces in forces_on_lifted(basis, space, elasticity, bilateral.contact.in_contact).chunks(LANES) {
             let views: Vec<&[f64]> = forces.iter().map(Vec::as_slice).collect();
-            let force = space.gather(&views);
+            let mut force = space.gather(&views);
+            space.project(bilateral.contact, &mut force);
             let mut response = space.zeros();
             bilateral.solve(elasticity, &force, &mut response, STEPS);
             pencil = self.extend(basis, vibration, elasticity, &pencil, &[response], forces.len());

@@ -222,10 +222,10 @@ impl ReducedStructure {
             },
             modes,
             band_hz: self.basis.band_hz,
-            has_all_modes: self.basis.is_complete,
+            has_all_modes: friction.is_complete,
             damped_above_hz: self.damped_above_hz(model, &friction),
-            basis: self.basis.len(),
-            is_reduced: !self.basis.is_complete,
+            basis: friction.basis_len(),
+            is_reduced: !friction.is_complete,
         })
     }
 
@@ -270,7 +270,7 @@ impl ReducedStructure {
         let least_hz = bound::least_hz(coefficients.mu * largest, model.pin().material(), damping_s);
         // NaN, of no friction and no damping, gives no frequency either.
         let is_hopeless = least_hz.is_nan() || least_hz > JUDGED * self.basis.band_hz;
-        if self.basis.is_complete || self.holders.is_some() || coefficients.falls() || is_hopeless {
+        if friction.is_complete || self.holders.is_some() || coefficients.falls() || is_hopeless {
             return None;
         }
         let bilateral = Bilateral {

@@ -37,6 +37,8 @@ pub struct Friction {
     pub equilibrium: UnitEquilibrium,
     /// What the basis lacks where nodes are lifted.
     lifted: Extension,
+    /// Whether the basis and `lifted` have all modes of the mesh at this equilibrium.
+    pub is_complete: bool,
     /// K − μ AᵀB in the basis and `lifted`.
     stiffness: Mat<f64>,
     /// D in the basis and `lifted`, for a load of 1 N and a drive's rate of 1.
@@ -117,8 +119,22 @@ impl Friction {
         let pencil = Pencil { stiffness, sideways, viscous: Vec::new(), damping_s: 0.0, alpha_r_per_s: 0.0 };
         let mut lifted = Extension::none();
         let Pencil { stiffness, sideways, .. } = lifted.add_lifted(basis, &vibration, elasticity, pencil);
-        let sector = OnceLock::new();
-        Self { coefficients, equilibrium, lifted, stiffness, sideways, sideways_of_nodes, sector }
+        let lifted_nodes = equilibrium.in_contact.iter().filter(|on| !**on).count();
+        Self {
+            is_complete: basis.is_complete && lifted.vectors.len() == lifted_nodes,
+            coefficients,
+            equilibrium,
+            lifted,
+            stiffness,
+            sideways,
+            sideways_of_nodes,
+            sector: OnceLock::new(),
+        }
+    }
+
+    /// Number of vectors in which the modes are found.
+    pub fn basis_len(&self) -> usize {
+        self.stiffness.nrows()
     }
 
     /// The dampers that stand for the slope of the law, for this load \[N\].
@@ -225,7 +241,7 @@ impl Point<'_> {
     /// The leading modes.
     pub fn modes(&self, elasticity: &mut Elasticity<'_>, count: usize, accuracy: Accuracy) -> Vec<FullMode> {
         let lifted = &self.friction.lifted;
-        let r = self.basis.len() + lifted.vectors.len();
+        let r = self.friction.basis_len();
         let sideways = Mat::from_fn(r, r, |i, j| self.load_over_rate * self.friction.sideways[(i, j)]);
         let viscous = self
             .viscous
@@ -279,7 +295,7 @@ impl Point<'_> {
                 break;
             }
         }
-        let judged_hz = if self.basis.is_complete { f64::INFINITY } else { JUDGED * self.basis.band_hz };
+        let judged_hz = if self.friction.is_complete { f64::INFINITY } else { JUDGED * self.basis.band_hz };
         for _ in 0..accuracy.groups {
             let chosen = accuracy.choose(&mut modes, judged_hz);
             if chosen == 0 {
@@ -317,7 +333,7 @@ impl Point<'_> {
 
     /// Whether the basis has all modes at the frequency of a value.
     fn is_in_band(&self, value: c64) -> bool {
-        self.basis.is_complete || value.im <= TAU * self.basis.band_hz
+        self.friction.is_complete || value.im <= TAU * self.basis.band_hz
     }
 
     /// Corrects up to four modes in the full space. Each round adds the responses of the pin to the residuals of right and

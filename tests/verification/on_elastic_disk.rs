@@ -56,18 +56,19 @@ fn sliding(target: TargetSurface, time_s: f64) -> (Vec<[f64; 2]>, f64) {
 /// smooth patches the normal force varies less as nodes pass from patch to patch. This is their purpose.
 #[test]
 fn riding_over_edges_is_smooth() {
-    rides_smoothly(0.015, 2.0);
+    rides_smoothly(0.015, 2.0, "");
 }
 
 /// Protects: the same over more edges.
 #[test]
 #[ignore = "a run of 38 ms"]
 fn riding_over_many_edges_is_smooth() {
-    rides_smoothly(0.030, 4.0);
+    rides_smoothly(0.030, 4.0, ", many edges");
 }
 
-fn rides_smoothly(time_s: f64, fewest_edges: f64) {
-    let mut evidence = Evidence::new("R5", "sliding over edges, T/N against μ = 0.1", COULOMB);
+fn rides_smoothly(time_s: f64, fewest_edges: f64, form: &str) {
+    let quantity = format!("sliding over edges, T/N against μ = 0.1{form}");
+    let mut evidence = Evidence::new("R5", quantity, COULOMB);
     let mut waver = Vec::new();
     for target in [TargetSurface::Bilinear, TargetSurface::Ferguson] {
         let (found, edges) = sliding(target, time_s);
@@ -83,7 +84,7 @@ fn rides_smoothly(time_s: f64, fewest_edges: f64) {
     );
     let mut gain = Evidence::new(
         "R5",
-        "waver of N on Ferguson patches over that on bilinear ones",
+        format!("waver of N on Ferguson patches over that on bilinear ones{form}"),
         "kinks of the surface",
     );
     gain.bounded("E = 20 GPa, 6 mm, 100 rpm", waver[1] / waver[0], 0.0, 1.0, 1.0);
