@@ -231,7 +231,7 @@ fn no_growing_mode_is_missed_where_most_nodes_are_lifted() {
     crowned.scene.pin.base.crown_radius_m = Some(2.0);
     crowned.numerics.beta_r_s = 1.0e-8;
     let [lifted, growing] = no_growing_mode_is_missed(&crowned);
-    assert!(lifted > 40 && growing >= 2, "{lifted} nodes are lifted, {growing} modes grow");
+    assert!(lifted > 40 && growing >= 3, "{lifted} nodes are lifted, {growing} modes grow");
 }
 
 /// Protects: no growing mode is missed where nodes are lifted. The basis of the reduced problem holds all slave nodes in z, and a mode in which
@@ -255,14 +255,16 @@ fn no_growing_mode_is_missed_where_nodes_are_lifted() {
     assert!(lifting > 12, "only {lifting} scenes have lifted nodes");
 }
 
-/// Compares the growing modes of the reduced problem with those of the sparse one. Returns the numbers of lifted nodes and of modes.
+/// Compares the three fastest growing modes of the sparse problem with those of the reduced one. Returns the numbers of lifted nodes and of
+/// these modes.
 fn no_growing_mode_is_missed(spec: &JobSpec) -> [usize; 2] {
     let (model, drive) = (model(spec), analysis::drive(spec));
-    let reduced = Structure::new(&model).unwrap().point(&model, &drive, 4).unwrap();
-    let sparse = SparseStructure::new(&model).unwrap().point(&model, &drive, 4).unwrap();
-    let sure = TAU * SURE * reduced.band_hz.min(sparse.band_hz);
+    let reduced = Structure::new(&model).unwrap().point(&model, &drive, 8).unwrap();
+    let sparse = SparseStructure::new(&model).unwrap().point(&model, &drive, 16).unwrap();
+    // A mode of the sparse problem is one beyond its band, too.
+    let sure = TAU * SURE * reduced.band_hz;
     let values = sparse.modes.iter().map(|mode| mode.eigenvalue_per_s);
-    let growing: Vec<c64> = values.filter(|value| value.re > 0.0 && value.im < sure).collect();
+    let growing: Vec<c64> = values.filter(|value| value.re > 0.0 && value.im < sure).take(3).collect();
     for value in &growing {
         let errors = reduced.modes.iter().map(|other| (other.eigenvalue_per_s - value).norm());
         // The corrections end at a residual of 0.5 %.
