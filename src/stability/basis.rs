@@ -82,7 +82,7 @@ impl Basis {
             let bilateral = Bilateral { space, separable, contact };
             let tangential: Vec<Vec<f64>> = patterns(block_of(model), space.sliding())
                 .into_iter()
-                .flat_map(|values| [0, 1].map(|c| spread(space, &values, c)))
+                .flat_map(|values| [0, 1].map(|c| spread(space, space.sliding(), &values, c)))
                 .collect();
             for forces in tangential.chunks(LANES) {
                 let views: Vec<&[f64]> = forces.iter().map(Vec::as_slice).collect();
@@ -209,10 +209,10 @@ pub fn patterns(mesh: &BlockMesh, slaves: &[SlidingNode]) -> Vec<Vec<f64>> {
     (0..PATTERNS[0]).flat_map(|i| (0..PATTERNS[1]).map(move |j| (i, j))).map(|(i, j)| pattern(i, j)).collect()
 }
 
-/// A component of all slave nodes as a vector of the pin.
-fn spread(space: &Space, values: &[f64], component: usize) -> Vec<f64> {
+/// A component of some slave nodes as a vector of the pin.
+pub fn spread(space: &Space, slaves: &[SlidingNode], values: &[f64], component: usize) -> Vec<f64> {
     let mut vector = vec![0.0; space.len()];
-    for (slave, value) in space.sliding().iter().zip(values) {
+    for (slave, value) in slaves.iter().zip(values) {
         vector[3 * slave.node + component] = *value;
     }
     vector

@@ -1,9 +1,9 @@
 //! Vectors that are added to the basis for one equilibrium, or for some modes of one point.
 
-use super::basis::{Basis, patterns, sum_of};
+use super::basis::{Basis, patterns, spread, sum_of};
 use super::dashpots::Dashpots;
 use super::pencil::{Pencil, Sampling};
-use super::space::{Elasticity, LANES, Space, Vectors, block_of};
+use super::space::{Elasticity, LANES, SlidingNode, Space, Vectors, block_of};
 use super::vibration::Vibration;
 use faer::Mat;
 
@@ -221,21 +221,14 @@ fn forces_on_lifted(
     elasticity: &Elasticity<'_>,
     in_contact: &[bool],
 ) -> Vec<Vec<f64>> {
-    let lifted: Vec<usize> = (0..in_contact.len()).filter(|&i| !in_contact[i]).collect();
+    let all = space.sliding().iter().zip(in_contact);
+    let lifted: Vec<SlidingNode> = all.filter(|(_, on)| !**on).map(|(slave, _)| *slave).collect();
     let own: Vec<Vec<f64>> = if basis.is_complete || lifted.len() <= SINGLE {
         (0..lifted.len()).map(|i| (0..lifted.len()).map(|j| f64::from(u8::from(i == j))).collect()).collect()
     } else {
-        let slaves: Vec<_> = lifted.iter().map(|&i| space.sliding()[i]).collect();
-        independent(patterns(block_of(elasticity.model()), &slaves))
+        independent(patterns(block_of(elasticity.model()), &lifted))
     };
-    let spread = |values: Vec<f64>| {
-        let mut force = vec![0.0; space.len()];
-        for (&i, value) in lifted.iter().zip(values) {
-            force[3 * space.sliding()[i].node + 2] = value;
-        }
-        force
-    };
-    own.into_iter().map(spread).collect()
+    own.iter().map(|values| spread(space, &lifted, values, 2)).collect()
 }
 
 /// Orthonormal combinations of vectors, without those that hold almost nothing of their own.
