@@ -25,7 +25,7 @@ fn main() {
     let changed: Vec<&str> = ["status", "--porcelain", "--"].into_iter().chain(SOURCES).collect();
     let suffix = if git(&changed).is_some_and(|files| !files.is_empty()) { "+modified" } else { "" };
     println!("cargo::rustc-env=TRIBOSWEEP_COMMIT={commit}{suffix}");
-    // `0.1.0 (abc1234, 2026-11-22)` with the day of the commit; without a repository the version alone.
+    // `1.0.0 (abc1234, 2026-11-22)` with the day of the commit; without a repository the version alone.
     let version = env!("CARGO_PKG_VERSION");
     let built_from = git(&["log", "-1", "--abbrev=7", "--format=%h SUFFIX, %cs"])
         .map_or_else(String::new, |text| format!(" ({})", text.replace(" SUFFIX", suffix)));

@@ -70,7 +70,7 @@ def convergence():
             [mode] = modes(runs.ROOT / "studies/figure7.json", database, mu=mu, omega_rpm=speed,
                            elements=json.dumps([elements]), **damping)
             found.append({"mu": mu, "omega_rpm": speed, "elements": elements, **damping, "frequency_hz": float(mode["frequency_hz"]),
-                          "growth_per_s": float(mode["growth_rate_1_s"]), "residual": float(mode["residual"])})
+                          "growth_per_s": float(mode["growth_rate_per_s"]), "residual": float(mode["residual"])})
     return found
 
 
@@ -79,7 +79,7 @@ def coexistence():
     runs.sweep(SUDDEN, database)
     lines = runs.tribosweep("export", SUDDEN["name"], "--all", "--format", "json", database=database).splitlines()
     path = runs.WORK / f"{SUDDEN['name']}.json"
-    found = {(mode["clamp_side"], float(mode["omega_rpm"]), float(mode["mu"])): float(mode["growth_rate_1_s"])
+    found = {(mode["clamp_side"], float(mode["omega_rpm"]), float(mode["mu"])): float(mode["growth_rate_per_s"])
              for mode in modes(path, database)}
     jobs = [{"side": row["clamp_side"], "omega_rpm": row["omega_rpm"], "mu": row["mu"], "status": row["status"],
              "regime": row["regime"], "measured_per_s": row["growth_rate_per_s"], "mu_star": row["mu_star"],
@@ -94,7 +94,7 @@ def coexistence():
             if pair:
                 between = [round(pair[0][0] + 0.002 * i, 3) for i in range(1, 5)]
                 finer = modes(path, database, clamp_side=side, omega_rpm=speed, mu=json.dumps(between))
-                own = [pair[0], *((float(mode["mu"]), float(mode["growth_rate_1_s"])) for mode in finer), pair[1]]
+                own = [pair[0], *((float(mode["mu"]), float(mode["growth_rate_per_s"])) for mode in finer), pair[1]]
                 thresholds.append([side, speed, crossing(sorted(own))])
     return {"jobs": jobs, "thresholds": thresholds}
 
@@ -228,7 +228,7 @@ def speed_ratio(mu, omega_rpm):
 
 
 def demanded(mu, omega_rpm):
-    """The distance that src/stability/decision.rs demands."""
+    """The distance that src/mechanics/stability/decision.rs demands."""
     return 0.08 * (1 + speed_ratio(mu, omega_rpm)**-0.5)
 
 
@@ -391,7 +391,7 @@ tables, `show` and the page. A mode that is listed is one in any case. *Stable* 
 
 **The bound.** Let the coupling by friction turn no more than the share γ of the elastic energy: |Im qᴴK_μq| ≤ γ Re qᴴK_μq for all q. Then no
 mode grows above the frequency γ/(2πβ_R). It follows from the real and the imaginary part of the equation of a mode (the head of
-`src/stability/bound.rs` has the steps), and holds for every speed, because the damping of sideways slip only helps. γ is estimated by a Lanczos
+`src/mechanics/stability/bound.rs` has the steps), and holds for every speed, because the damping of sideways slip only helps. γ is estimated by a Lanczos
 iteration and taken 10 % larger. It is not small: soft motions of the whole pin under the disk's grip set it, and it grows with the mesh (a block held at its whole top, β_R = 10⁻⁶ s and
 μ = 0.2: 171 kHz on 6 × 8 × 5 and 446 kHz on 12 × 15 × 10 elements). On 6 × 8 × 5 elements of the reference pin with a clamp of 2 mm and μ = 0.1, γ is 0.69, so that β_R must be above 2.7·10⁻⁶ s
 before the bound lies in the band. So it helps strongly damped pins with little friction, and nothing else.

@@ -75,7 +75,7 @@ def head_commit():
 
 
 def solver_version():
-    return int(re.search(r'pub const VERSION: &str = "(\d+)"', (ROOT / "src/solver/mod.rs").read_text())[1])
+    return int(re.search(r'pub const VERSION: &str = "(\d+)"', (ROOT / "src/mechanics/solver/mod.rs").read_text())[1])
 
 
 def stamps():

@@ -14,7 +14,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # What is in the program and is no package: its name, its licence, where it is from, and the file with the licence's text.
 OTHERS = [
-    ("Apache ECharts 6.1.0", "Apache-2.0", "https://echarts.apache.org", ROOT / "src/report/explore/echarts-NOTICE.txt"),
+    ("Apache ECharts 6.1.0", "Apache-2.0", "https://echarts.apache.org", ROOT / "src/output/report/explore/echarts-NOTICE.txt"),
 ]
 # A package brings its licences in files of these names.
 NAMES = ("license", "licence", "copying", "copyright", "unlicense", "notice")

@@ -102,7 +102,7 @@ COLUMNS = ["scene", "level", "omega_rpm", "mu", "mu_static", "elements_x", "elem
 MODES_CHOSEN = ["reference", "steel"]
 # Modes of a point that are kept.
 MODES_KEPT = 6
-MODE_COLUMNS = ["scene", "level", "omega_rpm", "mu", "mode", "frequency_hz", "growth_rate_1_s", "converged"]
+MODE_COLUMNS = ["scene", "level", "omega_rpm", "mu", "mode", "frequency_hz", "growth_rate_per_s", "converged"]
 
 
 def speeds_rpm(own):
@@ -245,7 +245,7 @@ SAME_FREQUENCY = 0.01
 # Pairs of a mesh and the coarser mesh that comes before it.
 PAIRS = [("2", "1"), ("3", "2"), ("4", "2")]
 ASKED = [0.05, 0.02, 0.01]
-SOURCE = (runs.ROOT / "src/analysis/mesh_error.rs").read_text()
+SOURCE = (runs.ROOT / "src/mechanics/analysis/mesh_error.rs").read_text()
 
 
 def constant(pattern):
@@ -511,7 +511,7 @@ def figure7_words(jobs):
 
 SAME_MODE = constant(r"const SAME_MODE: f64 =")
 MODE_SHARE = constant(r"const MODE_SHARE: f64 =")
-MODE_NUMBERS = ["growth_rate_1_s", "frequency_hz"]
+MODE_NUMBERS = ["growth_rate_per_s", "frequency_hz"]
 
 
 def modes_of(rows):
@@ -528,7 +528,7 @@ def nearest(mode, modes):
     near = [other for other in modes if other["frequency_hz"] > 0
             and abs(other["frequency_hz"] - mode["frequency_hz"]) <= SAME_MODE * min(mode["frequency_hz"], other["frequency_hz"])]
     return min(near, default=None, key=lambda other: math.hypot(math.tau * (other["frequency_hz"] - mode["frequency_hz"]),
-                                                                other["growth_rate_1_s"] - mode["growth_rate_1_s"]))
+                                                                other["growth_rate_per_s"] - mode["growth_rate_per_s"]))
 
 
 def partner(mode, own, modes):
@@ -554,7 +554,7 @@ def mode_pairs(points, fine, coarse):
 
 def mode_bound(name, fine, coarse, levels, share=MODE_SHARE):
     """The bound of the error of a mode."""
-    size = math.tau * fine["frequency_hz"] if name == "growth_rate_1_s" else fine["frequency_hz"]
+    size = math.tau * fine["frequency_hz"] if name == "growth_rate_per_s" else fine["frequency_hz"]
     return abs(fine[name] - coarse[name]) / (multiple(levels[0]) / multiple(levels[1]) - 1) + share * size
 
 
@@ -576,7 +576,7 @@ def mode_table(points):
         bounds = [mode_bound(name, fine, coarse, levels) for fine, coarse, *_ in found]
         return [words, f"{levels[0]}, after {levels[1]}", len(found), percent(covered[0], 1), f"{percent(min(covered), 1)} to {percent(max(covered), 1)}",
                 percent(mode_coverage(name, found, levels, share=0), 0), f"{quantile(errors, 0.5):.3g} {unit}", f"{quantile(bounds, 0.5):.3g} {unit}", unknown]
-    kinds = [("growth_rate_1_s", "growth rate", "1/s"), ("frequency_hz", "frequency", "Hz")]
+    kinds = [("growth_rate_per_s", "growth rate", "1/s"), ("frequency_hz", "frequency", "Hz")]
     return runs.table(["", "mesh", "modes", "covered", "with orders 1.5 to 2", "by the difference alone", "median error", "median bound", "without a partner"],
                       [line(*kind, levels) for kind in kinds for levels in PAIRS])
 

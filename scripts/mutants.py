@@ -52,16 +52,20 @@ def has_test(mutant):
     if function == "in_a_file":
         # A test that runs on both databases is a module, in which each database has a function.
         function = modules.pop()
-    crate = ROOT / ("src/lib.rs" if mutant.target == "--lib" else f"tests/{mutant.target[7:]}.rs")
-    if not crate.is_file():
-        crate = crate.with_suffix("") / "main.rs"
+    if mutant.target == "--lib":
+        # The queue is a folder of src as the rooms of the root package are.
+        crates = [ROOT / folder / "lib.rs" for folder in ("src", "src/mechanics", "src/output")]
+    else:
+        program = ROOT / "tests" / mutant.target[7:]
+        crates = [program.with_suffix(".rs"), program / "main.rs"]
     # The first modules are files, and the others are inside the last of these files.
     for depth in range(len(modules), -1, -1):
-        path = crate.parent.joinpath(*modules[:depth])
-        for file in [path.with_suffix(".rs"), path / "mod.rs"] if depth else [crate]:
-            if file.is_file():
-                names = [rf"\bmod {module}\b" for module in modules[depth:]] + [rf"\bfn {function}\b"]
-                return all(re.search(name, file.read_text()) for name in names)
+        for crate in crates:
+            path = crate.parent.joinpath(*modules[:depth])
+            for file in [path.with_suffix(".rs"), path / "mod.rs"] if depth else [crate]:
+                if file.is_file():
+                    names = [rf"\bmod {module}\b" for module in modules[depth:]] + [rf"\bfn {function}\b"]
+                    return all(re.search(name, file.read_text()) for name in names)
     return False
 
 
@@ -85,10 +89,11 @@ def copy_sources():
     """Copies the tracked files. They get new times, so that cargo does not take the build of a mutant for theirs."""
     shutil.rmtree(SOURCE, ignore_errors=True)
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
-    for name in listed.split("\0"):
-        if (ROOT / name).is_file():
+    for name in filter(None, listed.split("\0")):
+        # Files, and links to folders.
+        if (ROOT / name).exists():
             (SOURCE / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(ROOT / name, SOURCE / name)
+            shutil.copy(ROOT / name, SOURCE / name, follow_symlinks=False)
 
 
 def run_tests(target, tests, limit_s):

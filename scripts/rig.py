@@ -48,7 +48,7 @@ def squeal(mesh, mus, across=2, element="full"):
         rows = list(csv.DictReader(lines))
     found = {}
     for mu in mus:
-        modes = [(float(row["growth_rate_1_s"]), float(row["frequency_hz"])) for row in rows
+        modes = [(float(row["growth_rate_per_s"]), float(row["frequency_hz"])) for row in rows
                  if float(row["mu"]) == mu and RANGE_HZ[0] < float(row["frequency_hz"]) < RANGE_HZ[1]]
         found[mu] = max(modes, default=None)
     forecast = runs.json.loads(runs.tribosweep("validate", str(path), "--json"))

@@ -139,7 +139,7 @@ def main():
         + "\n![μ\\* against the diameter of a cylindrical pin, for three speeds of the disk](cylinder.svg)\n"
         + f"\nAt one speed, μ\\* differs by up to {max(spread):.2f} between these diameters, with the same local μ"
         + (f", and the frequency by a factor of up to {max(slopes):.2f}" if slopes else "")
-        + f".\nThe lowest value, {lowest['mu_star']:.3f} at {1000 * lowest['diameter_m']:g} mm and {lowest['omega_rpm']:g} rpm, is {on_finer_mesh:.3f} on 20 × 20 × 14 elements, so it is no error of the mesh.\n"
+        + f".\nThe lowest value, {lowest['mu_star']:.3f} at {1000 * lowest['diameter_m']:g} mm and {lowest['omega_rpm']:g} rpm, is {on_finer_mesh:.3f} on 20 × 20 × 14 elements, so it is no mesh error.\n"
         "So two tribometers with pins of the same material and height measure different friction if their pins differ in diameter. A\n"
         "comparison between laboratories needs the pin's size as much as its material.\n",
     )

@@ -106,7 +106,7 @@ selective elements. The speed is in proportion to the load, 1 rpm per newton. Wi
 The neo-Hookean law is that of rubber. It stiffens under compression, so that the frequency rises with the load, in proportion to it at first. μ\\* moves by {max(abs(change(fine, load, "mu_star")) for load in LOADS if load <= top):.1%} at most, as long as the pin squeals.{ends_how} The St Venant–Kirchhoff law softens under
 compression, and changes the frequency in the other direction: it is a law for large rotations, and not for rubber under a load. Where it says `stops`, an element is inverted or the deformation has outgrown the time step.
 
-The two meshes differ by {abs(coarse[0][LOADS[0]]["frequency_hz"] / fine[0][LOADS[0]]["frequency_hz"] - 1):.1%} in the frequency of the linear pin. The program knows no error of the mesh for large strains, and none is measured here beyond this comparison. No measurement of a rubber pin is compared.
+The two meshes differ by {abs(coarse[0][LOADS[0]]["frequency_hz"] / fine[0][LOADS[0]]["frequency_hz"] - 1):.1%} in the frequency of the linear pin. The program knows no mesh error for large strains, and none is measured here beyond this comparison. No measurement of a rubber pin is compared.
 """.replace("%", " %").replace("  %", " %")
 
 

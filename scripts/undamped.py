@@ -104,7 +104,7 @@ def growing_at(mu, omega_rpm):
     with open(table, newline="") as file:
         [mode] = csv.DictReader(file)
     return (f"at μ = {mu:g} and {omega_rpm:g} rpm a mode at {float(mode['frequency_hz']) / 1e3:.1f} kHz has the growth rate "
-            f"{float(mode['growth_rate_1_s']):.0f} 1/s")
+            f"{float(mode['growth_rate_per_s']):.0f} 1/s")
 
 
 def section(hz):

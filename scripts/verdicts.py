@@ -85,7 +85,7 @@ def simulate(path, program, **settings):
 def of_modes(found):
     if not found:
         return "no modes"
-    if found[0]["growth_rate_1_s"] > 0:
+    if found[0]["growth_rate_per_s"] > 0:
         return "unstable"
     return "stable" if found[0]["above_band"] in ("nothing", "damped") else "no mode in the band grows"
 
@@ -102,7 +102,7 @@ def vibrates(record):
 def explained(verdict, found, record, path, program):
     """Why both differ, from further runs; empty if nothing explains it."""
     lead = found[0]
-    rate = lead["growth_rate_1_s"]
+    rate = lead["growth_rate_per_s"]
     if verdict == "unstable":
         if rate * record["simulated_s"] < 12:
             return f"grows by exp({rate * record['simulated_s']:.1f}) in the run, which ends before"
@@ -174,7 +174,7 @@ def main():
             why = explained(verdict, found, record, path, program)
             lead = found[0]
             differences.append([number, kind["shape"], kind["clamp"], kind["law"], kind["damping"],
-                                f"{verdict}: {lead['frequency_hz'] / 1000:.1f} kHz, {lead['growth_rate_1_s']:.0f} 1/s",
+                                f"{verdict}: {lead['frequency_hz'] / 1000:.1f} kHz, {lead['growth_rate_per_s']:.0f} 1/s",
                                 f"{end}" + (f" at {record['frequency_hz'] / 1000:.1f} kHz" if record["frequency_hz"] else ""),
                                 why or "**not explained**"])
             print(f"    {differences[-1]}", flush=True)

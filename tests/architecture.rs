@@ -55,7 +55,7 @@ fn src() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
-/// Members of the workspace that are made of several rooms, which are beside them.
+/// Members of the workspace that are made of several rooms.
 const MEMBERS: [&str; 2] = ["mechanics", "output"];
 
 /// The source files below src: path relative to src, and text. The heads of members only list their rooms.
@@ -71,14 +71,21 @@ fn sources() -> Vec<(String, String)> {
     with_text.collect()
 }
 
+/// The path of a file in its crate, which the root package and the members of several rooms are.
+fn in_crate(file: &str) -> &str {
+    let of_member = MEMBERS.iter().find_map(|member| file.strip_prefix(member)?.strip_prefix('/'));
+    of_member.unwrap_or(file)
+}
+
 /// The top-level module of a file.
 fn top_module(file: &str) -> &str {
-    let first = file.split('/').next().unwrap();
+    let first = in_crate(file).split('/').next().unwrap();
     first.strip_suffix(".rs").unwrap_or(first)
 }
 
 /// The depth of a file's module below the root of the crate: `cli/mod.rs` 1, `cli/run.rs` 2.
 fn depth(file: &str) -> usize {
+    let file = in_crate(file);
     file.strip_suffix("/mod.rs").unwrap_or(file).split('/').count()
 }
 
@@ -161,7 +168,7 @@ fn the_scanner_finds_modules() {
     assert_eq!(used("units.rs", "use super::spec;\n").into_iter().collect::<Vec<_>>(), ["spec"]);
     let nested = "mod tests {\n    use super::*;\n}\n";
     assert_eq!(used("units.rs", nested), BTreeSet::new());
-    assert_eq!((depth("cli/mod.rs"), depth("cli/run.rs"), depth("solver/body/mod.rs")), (1, 2, 2));
+    assert_eq!((depth("cli/mod.rs"), depth("cli/run.rs"), depth("mechanics/solver/body/mod.rs")), (1, 2, 2));
 }
 
 /// Protects: modules depend on each other in one direction only: mechanics does not know studies, databases and terminals,
@@ -339,9 +346,10 @@ fn the_map_is_true() {
     let entries = page.lines().filter_map(|line| line.strip_prefix("* [`")?.split_once("`] – "));
     let entries: BTreeMap<&str, &str> = entries.collect();
     let named: BTreeSet<String> = entries.keys().map(|&name| name.to_owned()).collect();
-    // The Python module is no room of the library: it calls the program.
-    let is_room = |name: &String| name != "python" && !MEMBERS.contains(&name.as_str());
-    let rooms: BTreeSet<String> = folders("src").into_iter().filter(is_room).collect();
+    // The Python module is no room of the library: it calls the program. The package of unit tests has no sources.
+    let is_room = |name: &String| !MEMBERS.iter().chain(&["python", "unit_tests"]).any(|other| name == other);
+    let of_members = MEMBERS.iter().flat_map(|member| folders(&format!("src/{member}")));
+    let rooms: BTreeSet<String> = folders("src").into_iter().filter(is_room).chain(of_members).collect();
     assert_eq!(named, rooms);
     for (name, text) in entries {
         assert!(is_description(text), "{name}: {text}");
@@ -417,9 +425,9 @@ fn the_rooms_are_those_of_the_document() {
         assert!(is_description(&row[1]), "{row:?}");
         told.append(&mut in_backticks(&row[0]));
     }
-    assert!(told.is_superset(&folders("src/solver")), "{told:?}");
+    assert!(told.is_superset(&folders("src/mechanics/solver")), "{told:?}");
     for room in told {
-        let path = src().join("solver").join(&room);
+        let path = src().join("mechanics/solver").join(&room);
         assert!(path.is_dir() || path.with_extension("rs").is_file(), "{room}");
     }
 

@@ -180,7 +180,7 @@ fn expanded(path: &str) -> Vec<String> {
 }
 
 /// Protects: the modules, types and files that the documents about the sources name exist. In these documents the names of
-/// files may begin at src or at the solver.
+/// files may begin at src, at a member or at the solver.
 #[test]
 fn modules_in_documents_exist() {
     let modules = modules();
@@ -204,7 +204,8 @@ fn modules_in_documents_exist() {
                 found += 1;
             } else if code.contains('/') {
                 for path in expanded(code) {
-                    let places = ["", "src/", "src/solver/"].map(|folder| format!("{folder}{path}"));
+                    let places = ["", "src/", "src/mechanics/", "src/mechanics/solver/", "src/output/"]
+                        .map(|folder| format!("{folder}{path}"));
                     assert!(places.iter().any(|place| exists(place)), "{document} names {path}");
                 }
             }

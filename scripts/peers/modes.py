@@ -166,7 +166,7 @@ def of_program(program):
         command = [str(pathlib.Path(program).resolve()), "stability", "-", "--no-thresholds", "--modes", "1", "--json"]
         done = subprocess.run(command, cwd=folder, input=json.dumps(study), stdout=subprocess.PIPE, text=True, check=True)
     mode = json.loads(done.stdout.splitlines()[0])
-    return mode["frequency_hz"], mode["growth_rate_1_s"]
+    return mode["frequency_hz"], mode["growth_rate_per_s"]
 
 
 def main():

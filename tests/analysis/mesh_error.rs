@@ -1,4 +1,4 @@
-//! The error of the mesh: its bound, what the bound covers, and where it is unknown.
+//! The mesh error: its bound, what the bound covers, and where it is unknown.
 
 use crate::analysis::signals::coarse;
 use std::collections::BTreeMap;

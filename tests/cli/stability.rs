@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use crate::cli::support::{ExportRow, Folder, rows, small, stderr, stdout, wall_times};
 
-const COLUMNS: &str = "omega_rpm,mu,mode,frequency_hz,frequency_mesh_error_hz,growth_rate_1_s,\
-growth_rate_mesh_error_1_s,damping_ratio,residual,converged,contact_nodes,lifted_nodes,band_hz,above_band";
+const COLUMNS: &str = "omega_rpm,mu,mode,frequency_hz,frequency_mesh_error_hz,growth_rate_per_s,\
+growth_rate_mesh_error_per_s,damping_ratio,residual,converged,contact_nodes,lifted_nodes,band_hz,above_band";
 
 fn number(row: &ExportRow, column: &str) -> f64 {
     row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
@@ -23,7 +23,10 @@ fn modes_of_a_study_in_one_command() {
     assert_eq!(lines.len(), 8, "two modes at each of four points: {table}");
     for point in lines.chunks(2) {
         assert_eq!((point[0]["mode"].as_str(), point[1]["mode"].as_str()), ("1", "2"));
-        assert!(number(&point[0], "growth_rate_1_s") >= number(&point[1], "growth_rate_1_s"), "{point:?}");
+        assert!(
+            number(&point[0], "growth_rate_per_s") >= number(&point[1], "growth_rate_per_s"),
+            "{point:?}"
+        );
         assert_eq!(point[0]["converged"], "true");
         assert_eq!(number(&point[0], "contact_nodes") + number(&point[0], "lifted_nodes"), 20.0);
     }
@@ -61,7 +64,7 @@ fn modes_of_a_study_in_one_command() {
     assert_eq!(lines_of_json.lines().count(), 8);
     for (line, row) in lines_of_json.lines().zip(&lines) {
         let object: Value = serde_json::from_str(line).unwrap();
-        assert_eq!(object["growth_rate_1_s"].as_f64().unwrap(), number(row, "growth_rate_1_s"));
+        assert_eq!(object["growth_rate_per_s"].as_f64().unwrap(), number(row, "growth_rate_per_s"));
         assert_eq!(object["converged"], true);
     }
 }

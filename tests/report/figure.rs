@@ -317,7 +317,7 @@ fn a_study_without_results_says_so() {
     }
 }
 
-/// Protects: a curve has a band as wide as the error of the mesh, a single point has one too, and there is none where the error is unknown.
+/// Protects: a curve has a band as wide as the mesh error, a single point has one too, and there is none where the error is unknown.
 #[test]
 fn the_error_of_the_mesh_is_a_band() {
     let error = after(row(2.0, 0.2, periodic(0.5)), 0.4, 14_500.0).mesh_error().unwrap().mu_star;
@@ -329,7 +329,7 @@ fn the_error_of_the_mesh_is_a_band() {
         });
         let chart = only(&rows, Plot::MuStar);
         let of = |colour| areas(&chart.panels[0], colour);
-        (of(COLOURS[0]), of(COLOURS[1]), texts(&chart.legend).contains(&"error of the mesh"))
+        (of(COLOURS[0]), of(COLOURS[1]), texts(&chart.legend).contains(&"mesh error"))
     };
     let (curve, point, legend) = bands(true);
     assert_eq!((curve.len(), point.len(), legend), (1, 1, true));

@@ -305,7 +305,7 @@ fn the_damping_is_named_with_all_its_parts() {
     assert!(!text.contains("Damping:"), "{text}");
 }
 
-/// Protects: the largest error of the mesh is in the head, and tables do not promise digits that it does not leave. The CSV keeps them.
+/// Protects: the largest mesh error is in the head, and tables do not promise digits that it does not leave. The CSV keeps them.
 #[test]
 fn digits_follow_the_error() {
     let job = |omega| row(omega, 0.4, periodic(0.263_429));
@@ -373,7 +373,7 @@ fn jobs_that_are_not_accurate_are_listed() {
     assert!(!nobody.contains("Accuracy"), "{nobody}");
 }
 
-/// Protects: a study says in how many jobs the error of the mesh is unknown, and why.
+/// Protects: a study says in how many jobs the mesh error is unknown, and why.
 #[test]
 fn unknown_errors_are_counted() {
     let job = |omega| row(omega, 0.4, periodic(0.3));

@@ -234,7 +234,7 @@ fn the_stability_has_a_report_of_its_own() {
     assert_eq!(written.len(), expected.len() - 1);
 
     let modes = read("modes.csv");
-    let header = "omega_rpm,mu,mode,frequency_hz,frequency_mesh_error_hz,growth_rate_1_s,growth_rate_mesh_error_1_s,damping_ratio,residual,converged,contact_nodes,lifted_nodes,band_hz,above_band";
+    let header = "omega_rpm,mu,mode,frequency_hz,frequency_mesh_error_hz,growth_rate_per_s,growth_rate_mesh_error_per_s,damping_ratio,residual,converged,contact_nodes,lifted_nodes,band_hz,above_band";
     assert_eq!(modes.lines().next(), Some(header));
     assert_eq!(modes.lines().count(), 1 + 2 * points.len());
     assert_eq!(modes.matches(",false,30,2,").count(), 1);

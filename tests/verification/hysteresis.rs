@@ -93,7 +93,7 @@ fn cycle(j: usize, rate: f64) -> Cycle {
 
 const RATES: [f64; 3] = [50.0, 100.0, 200.0];
 
-/// Protects: partial slip, reverse slip and the closed loop are right, without the error of the mesh. The
+/// Protects: partial slip, reverse slip and the closed loop are right, without the mesh error. The
 /// error of a finite rate of loading vanishes with the rate.
 #[test]
 fn the_loop_is_the_bars_as_the_load_slows_down() {

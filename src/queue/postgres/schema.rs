@@ -64,8 +64,8 @@ fn migrator() -> Migrator {
         Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false)
     };
     Migrator::with_migrations(vec![
-        migration(1, "queue", include_str!("../../../migrations/postgres/0001_queue.sql")),
-        migration(2, "plans", include_str!("../../../migrations/postgres/0002_plans.sql")),
-        migration(3, "digests", include_str!("../../../migrations/postgres/0003_digests.sql")),
+        migration(1, "queue", include_str!("../migrations/postgres/0001_queue.sql")),
+        migration(2, "plans", include_str!("../migrations/postgres/0002_plans.sql")),
+        migration(3, "digests", include_str!("../migrations/postgres/0003_digests.sql")),
     ])
 }

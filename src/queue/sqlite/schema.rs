@@ -81,10 +81,10 @@ fn migrator() -> Migrator {
         Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false)
     };
     Migrator::with_migrations(vec![
-        migration(1, "queue", include_str!("../../../migrations/sqlite/0001_queue.sql")),
-        migration(2, "leases", include_str!("../../../migrations/sqlite/0002_leases.sql")),
-        migration(3, "workers", include_str!("../../../migrations/sqlite/0003_workers.sql")),
-        migration(4, "plans", include_str!("../../../migrations/sqlite/0004_plans.sql")),
-        migration(5, "digests", include_str!("../../../migrations/sqlite/0005_digests.sql")),
+        migration(1, "queue", include_str!("../migrations/sqlite/0001_queue.sql")),
+        migration(2, "leases", include_str!("../migrations/sqlite/0002_leases.sql")),
+        migration(3, "workers", include_str!("../migrations/sqlite/0003_workers.sql")),
+        migration(4, "plans", include_str!("../migrations/sqlite/0004_plans.sql")),
+        migration(5, "digests", include_str!("../migrations/sqlite/0005_digests.sql")),
     ])
 }

@@ -137,7 +137,7 @@ fn no_coarser_mesh(spec: &JobSpec) -> Option<Doubt> {
     } else if !spec.scene.program.is_constant() {
         "a run with a program has no steady state to compare"
     } else if !spec.has_measured_elements() {
-        "nobody measured errors of the mesh with large strains or another element than `full`"
+        "nobody measured mesh errors with large strains or another element than `full`"
     } else {
         "half as many elements in each direction are too few"
     };
@@ -145,7 +145,7 @@ fn no_coarser_mesh(spec: &JobSpec) -> Option<Doubt> {
         kind: "mesh_error",
         fields: owned(&["accuracy.mu_star", "run.start", "scene.pin.elements"]),
         size: 1.0,
-        message: format!("the error of the mesh stays unknown: {why}"),
+        message: format!("the mesh error stays unknown: {why}"),
         help: "a finer mesh, or a comparison of two meshes by hand, says how large it is".to_owned(),
     })
 }

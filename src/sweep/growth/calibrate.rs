@@ -336,7 +336,7 @@ impl<'a> Known<'a> {
         }
     }
 
-    /// Values of runs that squeal whose error of the mesh is not known, of those that are compared with measured ones.
+    /// Values of runs that squeal whose mesh error is not known, of those that are compared with measured ones.
     fn unknown_mesh(&self) -> [usize; 2] {
         self.count_of_squealing(|own| Some(own?.mesh_deviation.is_none()))
     }

@@ -18,7 +18,7 @@ const MAX_MARGINAL: usize = 8;
 
 pub(super) fn friction(parts: &Parts) -> Section {
     let is_known = parts.report.rows.iter().any(|row| row.mesh_error().is_some());
-    let bands = if is_known { " Bands: the error of the mesh, where it is known." } else { "" };
+    let bands = if is_known { " Bands: the mesh error, where it is known." } else { "" };
     let caption = format!(
         "Macroscopic friction coefficient μ* {}. Error bars: standard error over the cycles, where it is larger than a \
          marker{}.{bands}",

@@ -174,7 +174,7 @@ pub struct JobRecord {
     /// The eigenvalues of steady sliding; none if they were not computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<SlidingStability>,
-    /// Whether the error of the mesh is as small as the job asks for; none if it asks for no accuracy.
+    /// Whether the mesh error is as small as the job asks for; none if it asks for no accuracy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy_reached: Option<bool>,
     /// The run on a coarser mesh that came before; none if there was none.

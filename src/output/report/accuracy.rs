@@ -52,7 +52,7 @@ pub(super) fn in_words(rows: &[JobRow]) -> Vec<String> {
         significant(largest, 2)
     ));
     let few = if jobs_unknown > 0 {
-        " Where the error of the mesh is unknown, μ* has three decimals at most and a frequency four digits."
+        " Where the mesh error is unknown, μ* has three decimals at most and a frequency four digits."
     } else {
         ""
     };

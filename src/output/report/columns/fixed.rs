@@ -56,7 +56,7 @@ pub static PLAIN: &[ExportColumn] = &[
 pub static FURTHER: &[ExportColumn] = &[
     quantity("growth_rate_per_s", Result, titled("growth rate").signed(), "growth rate of the fastest growing strong line, if the run ended in steady sliding, and of the leading mode without a run; negative: sliding is stable", |row| of(row, |record| record.growth_rate_per_s)),
     quantity("mu_star_extrapolated", Result, titled("μ* extrapolated to fine meshes"), "mu_star extrapolated to fine meshes from both meshes; absent where that is not better than mu_star", |row| row.mesh_error().and_then(|error| error.mu_star_extrapolated).into()),
-    detail("mesh_error_unknown", Result, "why the error of the mesh is unknown", |row| of(row, |record| record.mesh_error().err().map(UnknownError::reason))),
+    detail("mesh_error_unknown", Result, "why the mesh error is unknown", |row| of(row, |record| record.mesh_error().err().map(UnknownError::reason))),
     detail("obstacle", Result, "why the run is not periodic", |row| of(row, |record| record.obstacle.as_ref().map(in_words))),
     detail("obstacle_figure", Result, "the figure that is not the same from cycle to cycle", |row| unsteady(row, |figure, _, _| figure.into())),
     detail("obstacle_spread", Result, "its largest minus its smallest value over the cycles; of period, stress and amplitude, over the mean", |row| unsteady(row, |_, spread, _| spread.into())),

@@ -251,7 +251,7 @@ impl Frame<'_> {
         own.chunk_by(|a, b| a.x == b.x).map(mean).collect()
     }
 
-    /// The bands that the error of the mesh makes along a curve and beside single points.
+    /// The bands that the mesh error makes along a curve and beside single points.
     fn bands(&self, own: &[Place], curve: &[At], is_joined: bool, colour: Rgb) -> Vec<Layer> {
         let edge = |(here, (x, y)): (&[Place], &At)| {
             let error = here.iter().filter_map(|place| self.mesh_error(place)).reduce(f64::max)?;
@@ -324,7 +324,7 @@ impl Frame<'_> {
         }
         if with_value.iter().any(|place| mesh_error(self.scalar, place.row).is_some()) {
             let band = Pen { cover: 2.0 * COVER, ..Pen::solid(GREY, 12.0) };
-            entries.push(Entry::line(band, "error of the mesh"));
+            entries.push(Entry::line(band, "mesh error"));
         }
         if layout.has_sources() {
             entries.push(Entry::heading("source"));

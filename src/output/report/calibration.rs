@@ -37,7 +37,7 @@ pub struct Calibration {
     pub checks: Vec<Check>,
     /// Whether further runs would not change the region much.
     pub is_known: bool,
-    /// Values of runs that squeal whose error of the mesh is not known, and all of them.
+    /// Values of runs that squeal whose mesh error is not known, and all of them.
     pub unknown_mesh: [usize; 2],
     /// Measured values that runs which squeal do not have, and all that they could have.
     pub without_values: [usize; 2],
@@ -294,7 +294,7 @@ impl Calibration {
                 "it counts as the largest one of the neighbours that know it"
             };
             words.push(format!(
-                "The error of the mesh is unknown in {unknown} of {values} values of runs that squeal; there {counts}."
+                "The mesh error is unknown in {unknown} of {values} values of runs that squeal; there {counts}."
             ));
         }
         words

@@ -96,7 +96,7 @@ pub enum Start {
     /// rest if there is no such cycle, or if a motion on another mesh is not enough to start from; that run then says how large the error of
     /// the mesh is. If two limit cycles are possible, the run may reach another one than from rest.
     Nested,
-    /// Rest, after a run of the same scene on that coarser mesh, which says how large the error of the mesh is.
+    /// Rest, after a run of the same scene on that coarser mesh, which says how large the mesh error is.
     Compared,
 }
 

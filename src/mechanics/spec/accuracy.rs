@@ -33,7 +33,7 @@ impl JobSpec {
         } else if self.scene.disk.kind == DiskKind::Elastic {
             "absent on an elastic disk, whose mesh has an error of its own"
         } else if !self.has_measured_elements() {
-            "absent with large strains or another element than `full`: errors of the mesh were not measured with them"
+            "absent with large strains or another element than `full`: mesh errors were not measured with them"
         } else if !self.run.stop_early {
             "absent with run.stop_early = false: each mesh has as long a run as its own error needs"
         } else if self.numerics.time_step_s.is_some() {

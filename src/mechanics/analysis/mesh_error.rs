@@ -23,7 +23,7 @@ pub struct MeshError {
     pub mu_star_extrapolated: Option<f64>,
 }
 
-/// Why the error of the mesh is not known.
+/// Why the mesh error is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UnknownError {
     /// The run has no steady state whose error could be estimated.

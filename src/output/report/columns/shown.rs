@@ -21,7 +21,7 @@ pub(in crate::report) struct Shown {
 pub(in crate::report) struct Digits {
     /// The last digit that is shown at all.
     pub last: Last,
-    /// The last digit where the error of the mesh is not known: the statistical error alone would promise too many.
+    /// The last digit where the mesh error is not known: the statistical error alone would promise too many.
     pub unmeasured: Last,
     /// The power of ten of a digit that is shown whatever the error is.
     pub coarsest: i32,

@@ -239,7 +239,7 @@ fn error_of_friction(rows: &[JobRow]) -> Option<Tile> {
     let share = |row: &JobRow| Some(row.mesh_error()?.mu_star / row.record()?.mu_star.abs());
     let known: Vec<(f64, &JobRow)> = done.iter().filter_map(|row| Some((share(row)?, *row))).collect();
     let unknown = done.len() - known.len();
-    let title = "error of the mesh";
+    let title = "mesh error";
     match known.iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
         None => (unknown > 0).then(|| Tile::new(title, "unknown", "")),
         Some((share, row)) => {

@@ -173,7 +173,7 @@ impl JobSpec {
         if is_enough { vec![half, two_thirds] } else { Vec::new() }
     }
 
-    /// Whether the errors of the mesh were measured with the elements and the strains of the pin and of its disk. What two meshes say of each other was not
+    /// Whether the mesh errors were measured with the elements and the strains of the pin and of its disk. What two meshes say of each other was not
     /// compared with finer ones for the others.
     pub fn has_measured_elements(&self) -> bool {
         let Scene { pin, disk, .. } = &self.scene;
