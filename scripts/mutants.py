@@ -32,6 +32,8 @@ BUILDS = ROOT / "target/mutants/target"
 # The tests of the unchanged copy run together, and their first build compiles all dependencies.
 UNCHANGED_LIMIT_S, MUTANT_LIMIT_S = 60 * 60, 15 * 60
 KILLED = "killed"
+# The tests inside the sources, as the target of a mutant.
+UNITS = "--package tribosweep-unit-tests"
 
 
 class Mutant(NamedTuple):
@@ -52,7 +54,7 @@ def has_test(mutant):
     if function == "in_a_file":
         # A test that runs on both databases is a module, in which each database has a function.
         function = modules.pop()
-    if mutant.target == "--lib":
+    if mutant.target == UNITS:
         # The queue is a folder of src as the rooms of the root package are.
         crates = [ROOT / folder / "lib.rs" for folder in ("src", "src/mechanics", "src/output")]
     else:
@@ -79,8 +81,8 @@ def problems(mutant, names):
         yield "the replacement is the text itself"
     if names.count(mutant.name) != 1:
         yield "another mutant has this name"
-    if not re.fullmatch(r"--lib|--test \w+", mutant.target):
-        yield f"{mutant.target}: expected --lib or --test and a name"
+    if not re.fullmatch(rf"{UNITS}|--test \w+", mutant.target):
+        yield f"{mutant.target}: expected {UNITS}, or --test and a name"
     elif not has_test(mutant):
         yield f"{mutant.target}: there is no test {mutant.test}"
 
@@ -103,9 +105,6 @@ def run_tests(target, tests, limit_s):
     environment["CARGO_TARGET_DIR"] = str(BUILDS)
     # A mutant may name another compiler, which must not be used.
     environment["RUSTUP_TOOLCHAIN"] = tomllib.loads((ROOT / "rust-toolchain.toml").read_text())["toolchain"]["channel"]
-    if target == "--lib":
-        # The tests inside the sources of the mechanics have a package of their own.
-        target = "--lib --test mechanics_units"
     command = ["cargo", "test", "--locked", *target.split(), "--", "--color=never", "--exact", *tests]
     # A test that fails may leave processes behind. They would hold a pipe open, and the script would wait for them.
     with (
