@@ -13,7 +13,8 @@ use crate::analysis::stability::MODES;
 use crate::exit;
 use crate::publish::table::Format;
 use crate::queue::{Location, Shard};
-use crate::report::{Along, SHAPES, STABILITY_PAGE, modes_table, thresholds_table};
+use crate::report::{Along, SHAPES, STABILITY_PAGE, ShownModes, modes_table, thresholds_table};
+use crate::study::number_in;
 use crate::sweep::Plan;
 use crate::sweep::{
     self, Purpose, plan_thresholds, read_stability, ways_to_thresholds, write_stability_report,
@@ -37,6 +38,10 @@ pub(crate) struct Args {
     /// Number of modes at each point in the table, the fastest growing first.
     #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u8).range(1..=MODES as i64))]
     modes: u8,
+    /// Show the modes whose frequencies are nearest to this one, the nearest first, instead of those that grow fastest. The 12
+    /// fastest growing modes of a point are known. Without a unit it is in Hz.
+    #[arg(long, value_name = "FREQUENCY", value_parser = frequency_hz)]
+    near: Option<f64>,
     /// Write the shapes of the modes in the table for ParaView, into the folder `modes` of the report. The grid may have 50
     /// points at most.
     #[arg(long)]
@@ -57,6 +62,12 @@ pub(crate) struct Args {
     out: StabilityFolder,
 }
 
+/// Parses a frequency, such as `11kHz`, in Hz.
+fn frequency_hz(text: &str) -> Result<f64, String> {
+    let found = number_in(text, "Hz")?;
+    if found > 0.0 { Ok(found) } else { Err("expected a frequency above 0, such as 11kHz".to_owned()) }
+}
+
 /// Computes the modes. If it is interrupted, the tables have the points that are done.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let plan = args.study.plan_of_modes()?;
@@ -72,7 +83,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         // There are no long runs whose states could be stored.
         let mut code = work_on(&plan, options(&args.threads, None), queue).await?;
         let points = read_stability(queue, &name).await?;
-        let table = modes_table(points.iter().filter(|point| point.on_grid), args.modes.into());
+        let modes = ShownModes { count: args.modes.into(), near_hz: args.near };
+        let table = modes_table(points.iter().filter(|point| point.on_grid), modes);
         if let Some(path) = &args.csv {
             fill_file(path, |out| Ok(table.write(Format::Csv, out)?))?;
         }
@@ -94,8 +106,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         let folder = args.out.of_modes().of(&name);
         // Who interrupts the computation does not wait for the shapes.
         if code != exit::WORK_LEFT && !on_grid.is_empty() {
-            let written =
-                shapes::write(&on_grid, args.modes.into(), args.threads.number(), &folder.join(SHAPES))?;
+            let written = shapes::write(&on_grid, modes, args.threads.number(), &folder.join(SHAPES))?;
             code = code.max(written);
         }
         // The page comes last, because it names the shapes.

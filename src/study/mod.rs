@@ -92,3 +92,4 @@ pub use single::SingleJob;
 pub use suggest::{misspelt_name, nearest_name};
 pub use text::{StudyText, json_value};
 pub use text_file::read_text;
+pub use with_unit::number_in;

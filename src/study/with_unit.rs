@@ -234,6 +234,18 @@ pub(super) fn in_setting(value: &mut Value, unit: &str) -> Result<(), String> {
     refused.into_iter().next().map_or(Ok(()), |(_, message)| Err(message))
 }
 
+/// A number from a text that may have a unit, in `unit`.
+///
+/// # Errors
+/// What is wrong with the text.
+pub fn number_in(text: &str, unit: &str) -> Result<f64, String> {
+    let mut value = serde_json::from_str(text).unwrap_or_else(|_| Value::from(text));
+    in_setting(&mut value, unit)?;
+    value
+        .as_f64()
+        .ok_or_else(|| format!("expected a number in {unit}, or one with another unit of the same kind"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::number;

@@ -8,7 +8,7 @@ use crate::cli::output::log;
 use crate::exit;
 use crate::inspect::write_mode;
 use crate::publish::{Folder, value};
-use crate::report::assignment;
+use crate::report::{ShownModes, assignment};
 use crate::solver::Model;
 use crate::study::Job;
 use crate::sweep::{Plan, parameters_of};
@@ -34,9 +34,14 @@ pub(super) fn points(plan: &Plan) -> Result<Vec<Job>, CliError> {
     Ok(plan.jobs().to_vec())
 }
 
-/// Computes the points again, because shapes are not stored, and writes the first `modes` modes of each into a folder.
+/// Computes the points again, because shapes are not stored, and writes the modes of each that are shown into a folder.
 /// Returns the exit code.
-pub(super) fn write(points: &[Job], modes: usize, threads: usize, folder: &Path) -> Result<u8, CliError> {
+pub(super) fn write(
+    points: &[Job],
+    modes: ShownModes,
+    threads: usize,
+    folder: &Path,
+) -> Result<u8, CliError> {
     let interrupt = foreground::interrupt();
     let structures = Structures::default();
     let mut files = Folder::create(folder, "modes")?;
@@ -46,13 +51,11 @@ pub(super) fn write(points: &[Job], modes: usize, threads: usize, folder: &Path)
         if interrupt.is_raised() {
             return foreground::exit_code(JobError::Interrupted);
         }
-        let found: Vec<_> =
-            part.par_iter().map(|job| of_point(job, &structures, modes, &interrupt)).collect();
+        let found: Vec<_> = part.par_iter().map(|job| of_point(job, &structures, &interrupt)).collect();
         for (job, found) in part.iter().zip(found) {
             match found {
                 Ok((model, found)) => {
-                    written += found.len();
-                    write_point(&mut files, job, &model, &found)?;
+                    written += write_point(&mut files, job, &model, &found, modes)?;
                 }
                 Err(JobError::Interrupted) => return foreground::exit_code(JobError::Interrupted),
                 // The sweep has reported the failure already.
@@ -71,24 +74,32 @@ pub(super) fn write(points: &[Job], modes: usize, threads: usize, folder: &Path)
 fn of_point(
     job: &Job,
     structures: &Structures,
-    modes: usize,
     interrupt: &Interrupt,
 ) -> Result<(Model, Vec<Shape>), JobError> {
     if interrupt.is_raised() {
         return Err(JobError::Interrupted);
     }
     let model = Model::from_scene(&job.spec.scene, &job.spec.numerics)?;
-    let found = shapes(&job.spec, &model, structures, modes)?;
+    let found = shapes(&job.spec, &model, structures)?;
     Ok((model, found))
 }
 
-fn write_point(files: &mut Folder, job: &Job, model: &Model, shapes: &[Shape]) -> Result<(), CliError> {
+/// Writes the modes that are shown. Returns their number.
+fn write_point(
+    files: &mut Folder,
+    job: &Job,
+    model: &Model,
+    shapes: &[Shape],
+    modes: ShownModes,
+) -> Result<usize, CliError> {
     let shortest_m = job.spec.scene.pin.extent_m().into_iter().fold(f64::INFINITY, f64::min);
-    for (index, (mode, shape)) in shapes.iter().enumerate() {
+    let shown = modes.of(shapes.iter().map(|(mode, _)| mode));
+    for &index in &shown {
+        let (mode, shape) = &shapes[index];
         let name = format!("{}_mode-{}", slug(job), index + 1);
         write_mode(files, model.mesh(), &name, mode.frequency_hz, shape, AMPLITUDE * shortest_m)?;
     }
-    Ok(())
+    Ok(shown.len())
 }
 
 /// The point as part of a file's name.

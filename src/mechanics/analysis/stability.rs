@@ -160,20 +160,15 @@ pub fn judge(
 /// A mode of steady sliding with its shape: complex amplitudes of the pin, three per node, the largest of which is 1.
 pub type Shape = (ComplexMode, Vec<Complex<f64>>);
 
-/// The `count` leading modes of steady sliding at the point of a job, at most [`MODES`], with their shapes.
+/// The [`MODES`] leading modes of steady sliding at the point of a job, with their shapes.
 ///
 /// # Errors
 /// If there is no equilibrium, or if an iteration does not converge.
-pub fn shapes(
-    spec: &JobSpec,
-    model: &Model,
-    structures: &Structures,
-    count: usize,
-) -> Result<Vec<Shape>, JobError> {
+pub fn shapes(spec: &JobSpec, model: &Model, structures: &Structures) -> Result<Vec<Shape>, JobError> {
     // The number of modes is that of the record, so that both have the same ones.
     let of = |structure: &Structure| structure.point_with_shapes(model, &drive(spec), MODES);
     let point = structures.with(spec, model, of)?;
-    Ok(point.modes.into_iter().take(count).map(|mode| (complex_mode(&mode), mode.shape)).collect())
+    Ok(point.modes.into_iter().map(|mode| (complex_mode(&mode), mode.shape)).collect())
 }
 
 fn growth(mode: &Mode) -> f64 {

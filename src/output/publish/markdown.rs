@@ -150,7 +150,11 @@ pub fn escape(text: &str) -> String {
         .replace('|', "\\|")
         .replace('<', "&lt;")
         .replace('*', "\\*")
-        .replace('`', "\\`");
+        .replace('`', "\\`")
+        // Without these a bracket is no link, and units in brackets stay readable.
+        .replace("](", "\\](")
+        .replace("][", "\\][")
+        .replace("]:", "\\]:");
     // Words beside another span keep their distance from it.
     format!(
         "{}{line}{}",
@@ -164,8 +168,10 @@ fn code(text: &str) -> String {
     format!("`{}`", one_line(text).replace('`', "'"))
 }
 
+/// Words with one space between them. A character that controls a terminal is replaced.
 fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    line.replace(char::is_control, "\u{fffd}")
 }
 
 #[cfg(test)]
@@ -209,5 +215,13 @@ mod tests {
             assert!(text.contains(part), "{part}\n{text}");
         }
         assert!(!text.contains("| 100"));
+    }
+
+    /// Protects: a study from a stranger puts no links and no commands for terminals into a report.
+    #[test]
+    fn texts_are_no_links() {
+        assert_eq!(escape("a [b](https://c.de) [f [Hz]"), "a [b\\](https://c.de) [f [Hz]");
+        assert_eq!(escape("[a][b] [b]: c"), "[a\\][b] [b\\]: c");
+        assert_eq!(escape("red \u{1b}[31m"), "red \u{fffd}[31m");
     }
 }

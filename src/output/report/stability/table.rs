@@ -40,8 +40,34 @@ fn of_mode<'a>() -> [Column<NumberedMode<'a>>; 12] {
 
 const ABOVE: &str = "what is known above band_hz: nothing is there, damped, coarser_run or not_looked_at";
 
-/// The leading `modes` modes at each point: a line for each of them.
-pub fn modes_table<'a>(points: impl IntoIterator<Item = &'a StabilityPoint>, modes: usize) -> Table {
+/// Which modes of a point are shown.
+#[derive(Clone, Copy, Debug)]
+pub struct ShownModes {
+    /// The largest number of modes.
+    pub count: usize,
+    /// Modes are shown in the order of their distance from this frequency (Hz); `None` if the fastest growing ones come first.
+    pub near_hz: Option<f64>,
+}
+
+impl ShownModes {
+    /// All modes, the fastest growing ones first.
+    pub const ALL: Self = Self { count: usize::MAX, near_hz: None };
+
+    /// Indices of the modes that are shown, in their order, among those of a point, whose first one grows fastest.
+    pub fn of<'a>(self, modes: impl IntoIterator<Item = &'a ComplexMode>) -> Vec<usize> {
+        let frequencies: Vec<f64> = modes.into_iter().map(|mode| mode.frequency_hz).collect();
+        let mut shown: Vec<usize> = (0..frequencies.len()).collect();
+        if let Some(near_hz) = self.near_hz {
+            let distance = |index: &usize| (frequencies[*index] - near_hz).abs();
+            shown.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        }
+        shown.truncate(self.count);
+        shown
+    }
+}
+
+/// The modes at each point that are shown: a line for each of them.
+pub fn modes_table<'a>(points: impl IntoIterator<Item = &'a StabilityPoint>, shown: ShownModes) -> Table {
     let points: Vec<&StabilityPoint> = points.into_iter().collect();
     let of_parameter = |name: &str| {
         let (head, name) = (parameters::head(name), name.to_owned());
@@ -50,8 +76,9 @@ pub fn modes_table<'a>(points: impl IntoIterator<Item = &'a StabilityPoint>, mod
     let names = parameter_names(points.iter().map(|point| &point.parameters));
     let columns: Vec<_> = names.into_iter().map(of_parameter).chain(of_mode()).collect();
     let of_point = |point: &'a StabilityPoint| {
-        let modes = (1..).zip(point.stability.modes.iter().take(modes));
-        modes.map(move |(number, mode)| NumberedMode { point, number, mode })
+        let modes = &point.stability.modes;
+        let of_number = move |index: usize| NumberedMode { point, number: index + 1, mode: &modes[index] };
+        shown.of(modes).into_iter().map(of_number)
     };
     Table::of("modes", &columns, &points.into_iter().flat_map(of_point).collect::<Vec<_>>())
 }

@@ -1,7 +1,7 @@
 //! The files of the stability: a part of a study's report, or a report of its own.
 
 use super::analysis::{Analysis, rows};
-use super::table::{modes_table, onsets_table};
+use super::table::{ShownModes, modes_table, onsets_table};
 use crate::publish::html;
 use crate::publish::{Folder, PublishError};
 use crate::report::figure::Figure;
@@ -39,7 +39,7 @@ pub(in crate::report) fn write_files(
     }
     let mut data = Vec::new();
     let thresholds = analysis.has_series().then(|| onsets_table(analysis));
-    for table in [modes_table(analysis.points(), usize::MAX)].into_iter().chain(thresholds) {
+    for table in [modes_table(analysis.points(), ShownModes::ALL)].into_iter().chain(thresholds) {
         data.push((folder.write_table(&table)?, table.csv()));
     }
     Ok(Files { figures: drawn, data })
