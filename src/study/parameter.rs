@@ -3,7 +3,7 @@
 use super::damping;
 use super::error::Problem;
 use super::json::number_hint;
-use super::plausible::{DENSITY, FRICTION, LENGTH, MODULUS, Plausible};
+use super::plausible::{DENSITY, FRICTION, HOLDER_MASS, LENGTH, MODULUS, Plausible};
 use super::preset::Preset;
 use super::suggest;
 use crate::spec::{
@@ -146,7 +146,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("clamp_side", "/scene/clamp/side", CLAMP_SIDE, "where the clamp is"),
     parameter("clamp_width_m", "/scene/clamp/width_m", Kind::Number, "width of the clamp's strip, or length of a collet").symbol("w").plausible(&LENGTH),
     parameter("top", "/scene/top", TOP_FACE, "how the top face moves in z"),
-    parameter("holder_mass_kg", "/scene/holder/mass_kg", Kind::Number, "mass of the holder"),
+    parameter("holder_mass_kg", "/scene/holder/mass_kg", Kind::Number, "mass of the holder").plausible(&HOLDER_MASS),
     parameter("holder_stiffness_x_n_m", "/scene/holder/stiffness_x_n_m", Kind::Number, "stiffness of the holder in x"),
     parameter("holder_stiffness_y_n_m", "/scene/holder/stiffness_y_n_m", Kind::Number, "stiffness of the holder in y, the sliding direction"),
     parameter("holder_stiffness_z_n_m", "/scene/holder/stiffness_z_n_m", Kind::Number, "0 for a holder whose mass moves with the load in z"),

@@ -58,6 +58,15 @@ pub(super) static LENGTH: Plausible = Plausible {
     help: "1 mm is 0.001 m",
 };
 
+/// The mass \[kg\] of a holder: what moves with a pin has some grams to ten kilograms, those of the rig in `studies/rig.json`.
+pub(super) static HOLDER_MASS: Plausible = Plausible {
+    low: Open,
+    too_low: "",
+    high: At(10.0),
+    too_high: "heavier than what moves with a pin, as if it were in g; expected kg",
+    help: "1 g is 0.001 kg",
+};
+
 /// A friction coefficient.
 pub(super) static FRICTION: Plausible = Plausible {
     low: Open,

@@ -1,6 +1,7 @@
 //! Protects: doubtful studies are accepted with a warning that names the reason, and ordinary ones have no warning.
 
 use super::{assert_contains, parse, refusal, shipped};
+use tribosweep::spec::StabilityMethod;
 use tribosweep::spec::elasticity::LOCKING_POISSON_RATIO;
 use tribosweep::study::{Study, Warning, job_warnings};
 
@@ -318,11 +319,33 @@ fn diameters_and_holders_in_other_units_are_named() {
             && text.contains("scene.pin.diameter_m = 8: a length of a metre or more, as if it were in mm"),
         "{text}"
     );
-    let warning = only(r#""holder": { "mass_kg": 80, "stiffness_y_n_m": 500 }"#);
+    let warning = only(r#""holder": { "mass_kg": 8, "stiffness_y_n_m": 50 }"#);
     assert_eq!(warning.kind, "unit");
-    // √(500/80)/2π Hz.
-    assert_contains(&warning.to_string(), &["scene.holder.stiffness_y_n_m = 500: ", "swings at 0.398 Hz"]);
+    // √(50/8)/2π Hz.
+    assert_contains(&warning.to_string(), &["scene.holder.stiffness_y_n_m = 50: ", "swings at 0.398 Hz"]);
+    let heavy = only(r#""holder": { "mass_kg": 20, "stiffness_y_n_m": 5e6 }"#).to_string();
+    assert_contains(&heavy, &["scene.holder.mass_kg = 20: ", "as if it were in g", "1 g is 0.001 kg"]);
     assert_eq!(warnings(&of_scene(r#""holder": { "mass_kg": 0.08, "stiffness_y_n_m": 5e6 }"#)), []);
+}
+
+/// Protects: who asks for a mesh error on a mesh that has no coarser one is told so, whether there is a run or only modes.
+#[test]
+fn an_error_without_a_coarser_mesh_is_named() {
+    let study = |nz: u32| {
+        parse(&format!(
+            r#"{{ "scene": {{ "pin": {{ "elements": [12, 15, {nz}] }} }}, "run": {{ "start": "compared" }} }}"#
+        ))
+    };
+    for method in [StabilityMethod::Simulate, StabilityMethod::Modes] {
+        let kinds = |nz: u32| {
+            let mut job = study(nz).base().clone();
+            job.stability = method;
+            job_warnings(&job).into_iter().map(|warning| warning.kind).collect::<Vec<_>>()
+        };
+        // Half as many elements are five and four.
+        assert_eq!(kinds(10), [""; 0]);
+        assert_eq!(kinds(8), ["mesh_error"], "{method:?}");
+    }
 }
 
 /// Protects: edges that a cylinder does not use are named where the study gives them, and a static coefficient below the kinetic one is.

@@ -131,7 +131,7 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
 
 /// An error that is asked for where there is nothing to compare with.
 fn no_coarser_mesh(spec: &JobSpec) -> Option<Doubt> {
-    let is_asked = spec.accuracy.is_some() || spec.run.start == Start::Compared;
+    let is_asked = spec.accuracy.is_some() && spec.has_run() || spec.run.start == Start::Compared;
     let why = if spec.scene.pin.own_elements().is_none() {
         "the program makes no coarser mesh of one from a file"
     } else if !spec.scene.program.is_constant() {
@@ -141,7 +141,7 @@ fn no_coarser_mesh(spec: &JobSpec) -> Option<Doubt> {
     } else {
         "half as many elements in each direction are too few"
     };
-    (is_asked && spec.has_run() && spec.coarser_elements().is_empty()).then(|| Doubt {
+    (is_asked && spec.coarser_elements().is_empty()).then(|| Doubt {
         kind: "mesh_error",
         fields: owned(&["accuracy.mu_star", "run.start", "scene.pin.elements"]),
         size: 1.0,

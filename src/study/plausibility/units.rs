@@ -4,7 +4,7 @@ use super::{Doubt, owned, short};
 use crate::spec::JobSpec;
 use crate::study::input::{Input, values_of};
 use crate::study::parameter::PARAMETERS;
-use crate::study::plausible::LONGEST_M;
+use crate::study::plausible::{HOLDER_MASS, LONGEST_M};
 use std::f64::consts::PI;
 
 /// Sliding speeds above this are suspected \[m/s\]; brakes of racing cars reach 100 m/s.
@@ -36,7 +36,10 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
         let help = "expected the distance in metres of the pin's centre from the disk's axis";
         add(&mut found, &["scene.disk.track_radius_m"], base_m / disk.track_radius_m, message, help);
     }
-    holder(spec, &mut found);
+    // A frequency of the holder is in doubt with its mass.
+    if scene.holder.mass_kg.is_none_or(|mass_kg| HOLDER_MASS.doubt(mass_kg).is_none()) {
+        holder(spec, &mut found);
+    }
     // A time of the pin is in doubt with its material and its size.
     if found.is_empty() {
         overdamped(spec, &mut found);
