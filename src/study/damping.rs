@@ -204,3 +204,17 @@ fn damp_holder(ratio: f64, spec: &mut JobSpec, gives: impl Fn(&str) -> bool) -> 
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::DAMPERS;
+    use crate::study::PARAMETERS;
+
+    /// Protects: a damper that is added to the holder is one of those that a damping ratio of the holder excludes.
+    #[test]
+    fn every_damper_of_the_holder_is_listed() {
+        let of_holder = PARAMETERS.iter().filter(|parameter| parameter.pointer.starts_with("/scene/holder/"));
+        let dampers = of_holder.filter(|parameter| parameter.pointer.contains("damping"));
+        assert_eq!(dampers.map(|parameter| parameter.name).collect::<Vec<_>>(), DAMPERS);
+    }
+}

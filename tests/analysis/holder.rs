@@ -2,8 +2,8 @@
 
 use crate::random::Random;
 use std::ops::ControlFlow;
-use tribosweep_mechanics::analysis::figures::Figures;
 use tribosweep_mechanics::analysis::sample::{HolderSample, Sample};
+use tribosweep_mechanics::analysis::sums::Sums;
 use tribosweep_mechanics::analysis::{self, JobObserver, JobRecord, Moment, Outcome};
 use tribosweep_mechanics::spec::{Clamp, ClampSide, Contact, FrictionLaw, Holder, JobSpec};
 
@@ -79,21 +79,21 @@ fn an_ideal_holder_has_no_motion() {
 /// Protects: peak to peak and root mean square, with weights, in every direction. Eight numbers have a few roundings.
 #[test]
 fn figures_of_a_holder_are_extremes_and_a_root_mean_square() {
-    let mut figures = Figures::EMPTY;
+    let mut sums = Sums::EMPTY;
     let (mut squares, mut weights) = ([0.0; 3], 0.0);
     for step in 0..8 {
         let weight = if step == 0 { 0.25 } else { 1.0 };
         let at = |axis: usize| f64::from(step) * (axis as f64 + 1.0);
         let holder = [0, 1, 2]
             .map(|axis| HolderSample { displacement_m: at(axis) - 3.0, acceleration_m_s2: 10.0 - at(axis) });
-        figures.add(&Sample { holder, ..Sample::default() }, weight);
+        sums.add(&Sample { holder, ..Sample::default() }, weight);
         weights += weight;
         for axis in 0..3 {
             squares[axis] += weight * (10.0 - at(axis)).powi(2);
         }
     }
     for (axis, squares) in squares.into_iter().enumerate() {
-        let [peak_to_peak_m, rms] = figures.holder(axis);
+        let [peak_to_peak_m, rms] = sums.holder(axis);
         assert_eq!(peak_to_peak_m, 7.0 * (axis as f64 + 1.0));
         assert!((rms / (squares / weights).sqrt() - 1.0).abs() < 8.0 * f64::EPSILON, "{rms}");
     }

@@ -3,7 +3,6 @@
 mod batch;
 mod decay;
 mod extremes;
-mod figures;
 mod frequency;
 mod holder;
 mod identities;
@@ -17,3 +16,4 @@ mod single;
 mod stability;
 mod statistics;
 mod steady;
+mod sums;

@@ -316,6 +316,35 @@ fn unused_coefficients_do_not_change_the_key() {
     assert_ne!(two(Some(0.5), None), two(Some(0.6), None));
 }
 
+/// Protects: an angle, a mass, an inertia or a damper of 0 is none, so that both are the same job. A field that is added to the holder
+/// and forgotten among them is found.
+#[test]
+fn nothing_is_the_same_as_no_value() {
+    let mut spec = JobSpec::default();
+    spec.scene.holder.stiffness_x_n_m = Some(2.0e7);
+    spec.scene.holder.stiffness_y_n_m = Some(2.0e7);
+    let job = serde_json::to_value(&spec).unwrap();
+    let is_absent = |pointer: &str| job.pointer(pointer).is_none_or(Value::is_null);
+    let of_holder = PARAMETERS.iter().map(|parameter| parameter.pointer);
+    // A stiffness of 0 lets the holder move, and none holds it.
+    let of_holder =
+        of_holder.filter(|pointer| pointer.starts_with("/scene/holder/") && !pointer.contains("stiffness"));
+    let others = ["/scene/pin/tilt_x_deg", "/scene/pin/tilt_y_deg", "/numerics/alpha_r_per_s"];
+    let pointers: Vec<&str> = of_holder.chain(others).collect();
+    assert_eq!(pointers.len(), 11);
+    for pointer in pointers {
+        assert!(is_absent(pointer), "{pointer}");
+        let with = |value: f64| {
+            let mut changed = job.clone();
+            let (parent, name) = pointer.rsplit_once('/').unwrap();
+            changed.pointer_mut(parent).unwrap()[name] = json!(value);
+            key(&serde_json::from_value(changed).unwrap())
+        };
+        assert_eq!(with(0.0), key(&spec), "{pointer}");
+        assert_ne!(with(1.0), key(&spec), "{pointer}");
+    }
+}
+
 /// Protects: run-out and waviness of no height, and roughness of no height, are no part of a job.
 #[test]
 fn surfaces_without_height_do_not_change_the_key() {

@@ -20,8 +20,8 @@
 use crate::verification::common::ROUNDINGS_PER_FORCE;
 use crate::verification::evidence::Evidence;
 use crate::verification::modes::stiffness_rows;
-use tribosweep_mechanics::analysis::figures::Figures;
 use tribosweep_mechanics::analysis::sample::Sampler;
+use tribosweep_mechanics::analysis::sums::Sums;
 use tribosweep_mechanics::solver::energy::{Energies, EnergyLedger};
 use tribosweep_mechanics::solver::interface::ContactState;
 use tribosweep_mechanics::solver::interface::law::Law;
@@ -83,7 +83,7 @@ fn identities_hold_in_every_window() {
     let mut state = State::<1>::at_rest(&model);
     let mut ledger = EnergyLedger::new(&model, 1);
     let mut sampler = Sampler::new(&model);
-    let mut figures = Figures::EMPTY;
+    let mut sums = Sums::EMPTY;
     let (mut p_y, mut p_z, mut stored) = (Range::EMPTY, Range::EMPTY, Range::EMPTY);
     // Momentum, energies and time at the start of the observation.
     let mut start = ([0.0; 3], Energies::default(), 0.0);
@@ -126,7 +126,7 @@ fn identities_hold_in_every_window() {
             start = (after, *ledger.energies(0), sample.time_s);
             continue;
         }
-        figures.add(&sample, 1.0);
+        sums.add(&sample, 1.0);
         p_y.see(after[1]);
         p_z.see(after[2]);
         let e = ledger.energies(0);
@@ -144,7 +144,7 @@ fn identities_hold_in_every_window() {
         if next_window < WINDOWS_S.len() && window_s >= WINDOWS_S[next_window] {
             next_window += 1;
             let name = format!("{:.3} ms", window_s * 1e3);
-            let residual = MU - figures.mu_star() - figures.stick_reduction() - figures.slip_reduction();
+            let residual = MU - sums.mu_star() - sums.stick_reduction() - sums.slip_reduction();
             let change = (after[1] - start.0[1]) - MU * (after[2] - start.0[2]);
             let steps = window_s / dt;
             let newton_n = newton_rounding_n(row_sums, largest_u);
@@ -157,7 +157,7 @@ fn identities_hold_in_every_window() {
         }
     }
     let mut newton = Evidence::new("B15", "limit cycle, worst step of Newton's law, force off [N]", IDENTITY);
-    let shares = figures.shares();
+    let shares = sums.shares();
     assert!(shares.iter().all(|&share| share > 0.01), "stick, slip and separation all take part: {shares:?}");
     for (c, worst) in worst_newton.into_iter().enumerate() {
         // Each momentum is a sum over all nodes, and its change is Δt times a force.

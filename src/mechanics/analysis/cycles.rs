@@ -1,7 +1,7 @@
 //! Limit cycles from section crossings: of the total normal force, and, with a holder that moves, of the force that it carries.
 
-use super::figures::Figures;
 use super::sample::{Sample, Smoother, smoothing_gain};
+use super::sums::Sums;
 use crate::solver::Model;
 use crate::solver::energy::Energies;
 use serde::{Deserialize, Serialize};
@@ -13,8 +13,8 @@ pub struct Cycle {
     pub start_s: f64,
     /// End \[s\], interpolated between two steps.
     pub end_s: f64,
-    /// Figures of the steps of the cycle.
-    pub figures: Figures,
+    /// Sums of the steps of the cycle.
+    pub sums: Sums,
     /// Energies at the start.
     pub energies: Energies,
     /// Half the range \[N\] of the filtered force of the section.
@@ -99,7 +99,7 @@ pub struct CycleCutter {
     highest: f64,
     remembered: f64,
     open: Option<(f64, Energies)>,
-    figures: Figures,
+    sums: Sums,
 }
 
 impl CycleCutter {
@@ -130,7 +130,7 @@ impl CycleCutter {
             highest: 0.0,
             remembered: 0.0,
             open: None,
-            figures: Figures::EMPTY,
+            sums: Sums::EMPTY,
         }
     }
 
@@ -153,13 +153,13 @@ impl CycleCutter {
             // The step that ends at this sample is shared between the two cycles.
             let fraction = self.previous / (self.previous - above);
             let time_s = sample.time_s - (1.0 - fraction) * self.time_step_s;
-            self.figures.add(sample, fraction);
+            self.sums.add(sample, fraction);
             next_weight = 1.0 - fraction;
             self.remembered = (self.highest - self.lowest) / 2.0;
             finished = self.open.map(|(start_s, at_start)| Cycle {
                 start_s,
                 end_s: time_s,
-                figures: self.figures,
+                sums: self.sums,
                 energies: at_start,
                 amplitude_n: self.remembered,
                 extremes_n: [self.highest, self.lowest],
@@ -167,11 +167,11 @@ impl CycleCutter {
                 friction_j: energies.friction_j - at_start.friction_j,
             });
             self.open = Some((time_s, *energies));
-            self.figures = Figures::EMPTY;
+            self.sums = Sums::EMPTY;
             (self.lowest, self.highest) = (0.0, 0.0);
         }
         self.previous = above;
-        self.figures.add(sample, next_weight);
+        self.sums.add(sample, next_weight);
         finished
     }
 }

@@ -3,7 +3,6 @@
 use super::cycles::{Cycle, CycleCutter};
 use super::decay::{self, DecayMonitor};
 use super::drive::drive;
-use super::figures::Figures;
 use super::lines;
 use super::nested::CoarseStart;
 use super::noted::Noted;
@@ -15,6 +14,7 @@ use super::record::{
 };
 use super::sample::{DIRECTIONS, OBSERVED_NAMES, Sample};
 use super::steady::{self, Obstacle, SteadyState};
+use super::sums::Sums;
 use super::window::{LateWindow, Settling, Trailing, Window};
 use crate::solver::Model;
 use crate::solver::body::ring::RingBody;
@@ -215,8 +215,8 @@ impl LaneAnalysis {
             None => Outcome::NotPeriodic,
         };
         let window = self.window(simulated_s);
-        let figures = &window.figures;
-        let [stick, slip, separated] = figures.shares();
+        let sums = &window.sums;
+        let [stick, slip, separated] = sums.shares();
         let load_n = self.spec.scene.load.force_n;
         let holder_moves = self.holder_moves();
         // The blocks of a decay have its trend in them, and the window is tapered.
@@ -228,18 +228,18 @@ impl LaneAnalysis {
         JobRecord {
             outcome,
             regime: regime(outcome, stick, separated, self.spec.detection.regime_threshold),
-            mu_star: figures.mu_star_without_momentum(holder_moves),
+            mu_star: sums.mu_star_without_momentum(holder_moves),
             mu_star_se,
-            mu_star_contact: figures.mu_star_contact(),
+            mu_star_contact: sums.mu_star_contact(),
             frequency_hz: window.frequency_hz,
             stick_share: stick,
             slip_share: slip,
             separated_share: separated,
-            n_over_f_min: figures.normal_min_n / load_n,
-            n_over_f_max: figures.normal_max_n / load_n,
-            sigma_n_max_pa: figures.sigma_n_max_pa,
-            slip_speed_max_m_s: figures.slip_speed_max_m_s,
-            lift_max_m: figures.lift_max_m,
+            n_over_f_min: sums.normal_min_n / load_n,
+            n_over_f_max: sums.normal_max_n / load_n,
+            sigma_n_max_pa: sums.sigma_n_max_pa,
+            slip_speed_max_m_s: sums.slip_speed_max_m_s,
+            lift_max_m: sums.lift_max_m,
             cycles: window.cycles,
             crossings_per_cycle: self.crossings_per_cycle(),
             simulated_s,
@@ -252,22 +252,22 @@ impl LaneAnalysis {
             energy_residual: energies.relative_residual(),
             macroscopic_identity_residual: if self.spec.scene.contact.law.is_always_mu() {
                 let mu = self.spec.scene.contact.mu;
-                mu - figures.mu_star() - figures.stick_reduction() - figures.slip_reduction()
+                mu - sums.mu_star() - sums.stick_reduction() - sums.slip_reduction()
             } else {
                 // The mean coefficient is not known otherwise, and that of the contact is what remains.
-                figures.mu_star_contact() - figures.mu_star()
+                sums.mu_star_contact() - sums.mu_star()
             },
             energy_identity_residual: energy_identity(&window.energies, energies),
             contact_loss_share: contact_loss_share(&window.energies, energies),
-            mu_reduction_stick: figures.stick_reduction(),
-            mu_reduction_slip: figures.slip_reduction(),
+            mu_reduction_stick: sums.stick_reduction(),
+            mu_reduction_slip: sums.slip_reduction(),
             growth_rate_per_s: self.monitor.as_ref().and_then(DecayMonitor::growth_rate_per_s),
             obstacle: (outcome == Outcome::NotPeriodic).then(|| self.obstacle(energies)),
             stability: self.stability.clone(),
             accuracy_reached: None,
             start: self.start.clone(),
             disk: model.ring().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),
-            holder: holder_motion(&self.spec.scene.holder, figures),
+            holder: holder_motion(&self.spec.scene.holder, sums),
             windows: self.windows.as_ref().map_or_else(Vec::new, |windows| windows.all(&self.spec)),
             plastic: plastic.map(|[work_j, strain_max]| PlasticFlow {
                 strain_max,
@@ -275,7 +275,7 @@ impl LaneAnalysis {
                 share: plastic::share(&window.energies, energies),
             }),
             energy: totals(energies),
-            nodes: observed_nodes(figures),
+            nodes: observed_nodes(sums),
         }
         .judged_by(self.spec.accuracy)
     }
@@ -331,12 +331,12 @@ impl LaneAnalysis {
         let covers = periodic.is_some() || duration_s >= 0.5 * (simulated_s - self.late.start_s);
         if whole.len() < 2 * crossings || !covers {
             let trailing = self.trailing.window(false, moves);
-            if self.late.figures.is_empty() {
+            if self.late.sums.is_empty() {
                 return trailing;
             }
             return Window {
                 start_s: self.late.start_s,
-                figures: self.late.figures,
+                sums: self.late.sums,
                 energies: self.late.energies.unwrap_or_default(),
                 // There are no cycles here, so equal blocks of the last observation time replace them.
                 mu_star_parts: if self.windows.is_none() { trailing.mu_star_parts } else { Vec::new() },
@@ -346,13 +346,11 @@ impl LaneAnalysis {
         }
         let mu_star_parts: Vec<f64> = whole
             .chunks_exact(crossings)
-            .map(|group| {
-                Figures::merged(group.iter().map(|cycle| &cycle.figures)).mu_star_without_momentum(moves)
-            })
+            .map(|group| Sums::merged(group.iter().map(|cycle| &cycle.sums)).mu_star_without_momentum(moves))
             .collect();
         Window {
             start_s: whole[0].start_s,
-            figures: Figures::merged(whole.iter().map(|cycle| &cycle.figures)),
+            sums: Sums::merged(whole.iter().map(|cycle| &cycle.sums)),
             energies: whole[0].energies,
             cycles: mu_star_parts.len(),
             mu_star_parts,
@@ -431,19 +429,19 @@ fn totals(energies: &Energies) -> EnergyTotals {
 }
 
 /// The directions in which a holder moves.
-fn holder_motion(holder: &Holder, figures: &Figures) -> Vec<HolderMotion> {
+fn holder_motion(holder: &Holder, sums: &Sums) -> Vec<HolderMotion> {
     let motion = |axis: usize| {
-        let [peak_to_peak_m, acceleration_rms_m_s2] = figures.holder(axis);
+        let [peak_to_peak_m, acceleration_rms_m_s2] = sums.holder(axis);
         HolderMotion { direction: DIRECTIONS[axis].to_owned(), peak_to_peak_m, acceleration_rms_m_s2 }
     };
     let moves = holder.directions();
     (0..3).filter(|axis| moves[*axis].is_some()).map(motion).collect()
 }
 
-fn observed_nodes(figures: &Figures) -> Vec<ObservedNode> {
+fn observed_nodes(sums: &Sums) -> Vec<ObservedNode> {
     OBSERVED_NAMES
         .iter()
-        .zip(&figures.nodes)
+        .zip(&sums.nodes)
         .map(|(name, node)| ObservedNode {
             name: (*name).to_owned(),
             y_peak_to_peak_m: node.y_peak_to_peak_m(),

@@ -3,7 +3,7 @@
 //! ```text
 //! solver state ─► sample ─► cycles ─► steady (periodic?) ─┐
 //!                     ├───► decay (stable?) ──────────────┼─► lane ─► record
-//!                     ├───► figures (means, extremes) ────┤
+//!                     ├───► sums (means, extremes) ────┤
 //!                     └───► program (windows, hysteresis) ┘
 //! ```
 //!
@@ -33,7 +33,6 @@ pub mod decay;
 mod drive;
 mod error;
 mod example;
-pub mod figures;
 mod job;
 pub mod lane;
 pub mod lanes;
@@ -50,6 +49,7 @@ pub mod record;
 pub mod sample;
 pub mod stability;
 pub mod steady;
+pub mod sums;
 mod window;
 mod workload;
 

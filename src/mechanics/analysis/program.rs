@@ -1,8 +1,8 @@
 //! The windows of a run whose speed or load changes in time, and the hysteresis between up and down.
 
 use super::cycles::Cycle;
-use super::figures::Figures;
 use super::sample::Sample;
+use super::sums::Sums;
 use crate::spec::{Change, JobSpec};
 use serde::{Deserialize, Serialize};
 
@@ -80,7 +80,7 @@ pub(super) struct ProgramWindows {
     done: Vec<ProgramWindow>,
     /// The number of the window that is open.
     number: u64,
-    figures: Figures,
+    sums: Sums,
     /// Cycles that ended in the open window, where the first began and the last ended.
     cycles: u64,
     cycles_s: [f64; 2],
@@ -95,7 +95,7 @@ impl ProgramWindows {
             count: (spec.run.limit_s / length_s).round() as u64,
             done: Vec::new(),
             number: 0,
-            figures: Figures::EMPTY,
+            sums: Sums::EMPTY,
             cycles: 0,
             cycles_s: [0.0; 2],
         }
@@ -107,10 +107,10 @@ impl ProgramWindows {
         while self.number + 1 < self.count && sample.time_s >= (self.number + 1) as f64 * self.length_s {
             self.done.extend(self.open(spec));
             self.number += 1;
-            self.figures = Figures::EMPTY;
+            self.sums = Sums::EMPTY;
             self.cycles = 0;
         }
-        self.figures.add(sample, 1.0);
+        self.sums.add(sample, 1.0);
         if let Some(cycle) = cycle {
             if self.cycles == 0 {
                 self.cycles_s[0] = cycle.start_s;
@@ -127,13 +127,13 @@ impl ProgramWindows {
 
     /// The window that is open; none without a step.
     fn open(&self, spec: &JobSpec) -> Option<ProgramWindow> {
-        if self.figures.is_empty() {
+        if self.sums.is_empty() {
             return None;
         }
-        let figures = &self.figures;
-        let [stick_share, slip_share, separated_share] = figures.shares();
-        let load_n = figures.load_n();
-        let swing_n = 0.5 * (figures.normal_max_n - figures.normal_min_n);
+        let sums = &self.sums;
+        let [stick_share, slip_share, separated_share] = sums.shares();
+        let load_n = sums.load_n();
+        let swing_n = 0.5 * (sums.normal_max_n - sums.normal_min_n);
         // A window within the first step of a ramp has no load.
         let n_amplitude = if load_n > 0.0 { swing_n / load_n } else { 0.0 };
         let [from_s, to_s] = self.cycles_s;
@@ -146,11 +146,11 @@ impl ProgramWindows {
             direction: self.direction(spec, time_s),
             omega_rpm: omega.map_or(scene.disk.omega_rpm, |table| table.mean(time_s)),
             load_n,
-            mu_star: figures.mu_star_without_momentum(!scene.holder.is_ideal()),
-            mu_star_contact: figures.mu_star_contact(),
+            mu_star: sums.mu_star_without_momentum(!scene.holder.is_ideal()),
+            mu_star_contact: sums.mu_star_contact(),
             frequency_hz: has_frequency.then(|| self.cycles as f64 / (to_s - from_s)),
             n_amplitude,
-            y_peak_to_peak_m: figures.nodes[1].y_peak_to_peak_m(),
+            y_peak_to_peak_m: sums.nodes[1].y_peak_to_peak_m(),
             stick_share,
             slip_share,
             separated_share,

@@ -21,8 +21,8 @@
 //! not count, and the amplitude is that of T and N together.
 
 use super::cycles::Cycle;
-use super::figures::Figures;
 use super::plastic::{self, shares_of_halves};
+use super::sums::Sums;
 use crate::spec::{Detection, SlowTimes};
 use serde::{Deserialize, Serialize};
 
@@ -89,9 +89,9 @@ fn flow_stands_still(window: &[Cycle], m: usize, detection: &Detection) -> bool 
     plastic::stands_still(shares_of_halves(window, m), detection.tolerance)
 }
 
-/// [`Figures::imbalance`] of a window.
+/// [`Sums::imbalance`] of a window.
 fn imbalance(window: &[Cycle]) -> f64 {
-    Figures::merged(window.iter().map(|cycle| &cycle.figures)).imbalance()
+    Sums::merged(window.iter().map(|cycle| &cycle.sums)).imbalance()
 }
 
 /// Why the end of a run does not count as periodic.
@@ -179,11 +179,11 @@ const NAMES: [&str; FIGURES] = [
     "sigma_n_max",
     "amplitude of N",
 ];
-/// Figures from this index on are compared relative to their mean.
+/// Sums from this index on are compared relative to their mean.
 const FIRST_RELATIVE: usize = 5;
 
 fn figures_of(group: &[Cycle]) -> [f64; FIGURES] {
-    let figures = Figures::merged(group.iter().map(|cycle| &cycle.figures));
+    let figures = Sums::merged(group.iter().map(|cycle| &cycle.sums));
     let [stick, slip, separated] = figures.shares();
     [
         figures.mu_star(),
@@ -199,10 +199,10 @@ fn figures_of(group: &[Cycle]) -> [f64; FIGURES] {
 
 /// The figures of a group of cycles of the holder.
 fn figures_of_swing(group: &[Cycle]) -> [f64; FIGURES] {
-    let figures = Figures::merged(group.iter().map(|cycle| &cycle.figures));
+    let figures = Sums::merged(group.iter().map(|cycle| &cycle.sums));
     let [stick, slip, separated] = figures.shares();
     let of_both = |cycle: &Cycle| {
-        let of_normal_n = 0.5 * (cycle.figures.normal_max_n - cycle.figures.normal_min_n);
+        let of_normal_n = 0.5 * (cycle.sums.normal_max_n - cycle.sums.normal_min_n);
         libm::hypot(cycle.amplitude_n, of_normal_n)
     };
     [

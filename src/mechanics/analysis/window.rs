@@ -1,8 +1,8 @@
 //! The windows of a run over which figures are averaged.
 
-use super::figures::Figures;
 use super::plastic;
 use super::sample::Sample;
+use super::sums::Sums;
 use crate::solver::energy::Energies;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
@@ -12,8 +12,8 @@ use std::collections::VecDeque;
 pub(super) struct LateWindow {
     /// Where it starts \[s\].
     pub start_s: f64,
-    /// Figures of its steps.
-    pub figures: Figures,
+    /// Sums of its steps.
+    pub sums: Sums,
     /// Energies at its first step; none before that step.
     pub energies: Option<Energies>,
 }
@@ -21,13 +21,13 @@ pub(super) struct LateWindow {
 impl LateWindow {
     /// A window from `start_s` to the end of the run.
     pub fn from(start_s: f64) -> Self {
-        Self { start_s, figures: Figures::EMPTY, energies: None }
+        Self { start_s, sums: Sums::EMPTY, energies: None }
     }
 
     /// Adds a step if it lies in the window.
     pub fn push(&mut self, sample: &Sample, energies: &Energies) {
         if sample.time_s >= self.start_s {
-            self.figures.add(sample, 1.0);
+            self.sums.add(sample, 1.0);
             self.energies.get_or_insert(*energies);
         }
     }
@@ -45,7 +45,7 @@ pub(super) struct Trailing {
 #[derive(Serialize, Deserialize)]
 struct Block {
     start_s: f64,
-    figures: Figures,
+    sums: Sums,
     /// Energies at the start.
     energies: Energies,
 }
@@ -66,11 +66,11 @@ impl Trailing {
                 self.blocks.pop_front();
             }
             let (start_s, energies) = (sample.time_s, *energies);
-            self.blocks.push_back(Block { start_s, figures: Figures::EMPTY, energies });
+            self.blocks.push_back(Block { start_s, sums: Sums::EMPTY, energies });
         }
         self.steps += 1;
         if let Some(block) = self.blocks.back_mut() {
-            block.figures.add(sample, 1.0);
+            block.sums.add(sample, 1.0);
         }
     }
 
@@ -80,16 +80,16 @@ impl Trailing {
     }
 
     /// How far the means of decaying sliding are from their ends. In steady sliding nodes have the coefficient `steady_mu` where the mean normal
-    /// force acts ([`Figures::centre`]); none if the law does not say.
+    /// force acts ([`Sums::centre`]); none if the law does not say.
     pub fn settling(&self, steady_mu: impl FnOnce([f64; 2]) -> Option<f64>) -> Settling {
-        let all = || self.blocks.iter().map(|block| &block.figures);
-        let whole = Figures::tapered(all());
-        let [clamp, contact] = [Figures::mu_star, Figures::mu_star_contact].map(|of| {
+        let all = || self.blocks.iter().map(|block| &block.sums);
+        let whole = Sums::tapered(all());
+        let [clamp, contact] = [Sums::mu_star, Sums::mu_star_contact].map(|of| {
             let values: Vec<f64> = all().map(of).collect();
             let quarter = self.blocks.len() / 4;
             let means = [0, 1, 2].map(|first| {
                 let part = self.blocks.range(first * quarter..(first + 2) * quarter);
-                of(&Figures::tapered(part.map(|block| &block.figures)))
+                of(&Sums::tapered(part.map(|block| &block.sums)))
             });
             let noise = LEAK * scatter(&values);
             (still_to_come(&means, noise), noise)
@@ -111,16 +111,16 @@ impl Trailing {
 
     /// The window of all blocks.
     pub fn window(&self, tapered: bool, holder_moves: bool) -> Window {
-        let figures = self.blocks.iter().map(|block| &block.figures);
+        let sums = self.blocks.iter().map(|block| &block.sums);
         let first = self.blocks.front();
         Window {
             start_s: first.map_or(0.0, |block| block.start_s),
-            figures: if tapered { Figures::tapered(figures) } else { Figures::merged(figures) },
+            sums: if tapered { Sums::tapered(sums) } else { Sums::merged(sums) },
             energies: first.map(|block| block.energies).unwrap_or_default(),
             mu_star_parts: self
                 .blocks
                 .iter()
-                .map(|block| block.figures.mu_star_without_momentum(holder_moves))
+                .map(|block| block.sums.mu_star_without_momentum(holder_moves))
                 .collect(),
             cycles: 0,
             frequency_hz: None,
@@ -188,8 +188,8 @@ fn scatter(values: &[f64]) -> f64 {
 pub(super) struct Window {
     /// Where it starts \[s\].
     pub start_s: f64,
-    /// Figures of its steps.
-    pub figures: Figures,
+    /// Sums of its steps.
+    pub sums: Sums,
     /// Energies at its start.
     pub energies: Energies,
     /// T/F of the parts of the window. They give the standard error of the mean.

@@ -2,9 +2,9 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::friction_law::{AtNode, FrictionLaw, FrictionLimit};
+use super::traits::{AtNode, FrictionLimit, LawFormula};
 use crate::solver::real::Real;
-use crate::spec::{Contact, FrictionLaw as Name};
+use crate::spec::{Contact, FrictionLaw};
 
 /// Coulomb's law with a constant coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,8 +20,8 @@ impl FrictionLimit<1> for Coulomb {
     }
 }
 
-impl FrictionLaw<1> for Coulomb {
-    const NAME: Name = Name::Coulomb;
+impl LawFormula<1> for Coulomb {
+    const NAME: FrictionLaw = FrictionLaw::Coulomb;
 
     fn of(contact: &Contact) -> Self {
         Self { mu: contact.mu }

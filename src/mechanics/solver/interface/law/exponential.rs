@@ -11,9 +11,9 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::friction_law::{AtNode, FrictionLaw, FrictionLimit, given, in_proportion, length};
+use super::traits::{AtNode, FrictionLimit, LawFormula, given, in_proportion, length};
 use crate::solver::real::{Real, decay};
-use crate::spec::{Contact, FrictionLaw as Name};
+use crate::spec::{Contact, FrictionLaw};
 
 /// μ(v) = μ + (μ_s − μ) exp(−v/v₀) + s v.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,8 +38,8 @@ impl FrictionLimit<4> for Exponential {
     }
 }
 
-impl FrictionLaw<4> for Exponential {
-    const NAME: Name = Name::Exponential;
+impl LawFormula<4> for Exponential {
+    const NAME: FrictionLaw = FrictionLaw::Exponential;
 
     fn of(contact: &Contact) -> Self {
         Self {

@@ -1,6 +1,6 @@
 //! A law in all lanes.
 
-use super::friction_law::FrictionLaw;
+use super::traits::LawFormula;
 use super::{Law, with_law};
 use crate::solver::field::{WIDTH, in_slots_of};
 use crate::solver::number::Number;
@@ -19,7 +19,7 @@ impl<W, R: Number> LawOfLanes<W, R, 0> {
     pub const NONE: Self = Self { rows: [], law: PhantomData };
 }
 
-impl<W: FrictionLaw<N> + 'static, R: Number, const N: usize> LawOfLanes<W, R, N> {
+impl<W: LawFormula<N> + 'static, R: Number, const N: usize> LawOfLanes<W, R, N> {
     /// Lanes of the law that one of them has. The [idle](Law::is_idle) ones may have another: their load is zero, so that any
     /// numbers serve.
     pub fn new(_of_one: &W, lanes: &[&Law], time_step_s: f64) -> Self {

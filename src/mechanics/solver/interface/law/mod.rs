@@ -4,8 +4,8 @@
 //! is the same for every law. A node whose trial force is within the limit sticks. Any other node slips, and a
 //! force of the size of the limit opposes its slip.
 //!
-//! To add a law, write a file that implements `FrictionLimit` and `FrictionLaw` for it, and add it to [`Law`], to [`Law::of`] and
-//! to `with_law!`. Its name, and what does not depend on its coefficients, is in [`spec`](crate::spec::FrictionLaw). The lanes of
+//! To add a law, write a file that implements `FrictionLimit` and `LawFormula` for it, and add it to [`Law`], to [`Law::of`] and
+//! to `with_law!`. Its name is in [`spec`](crate::spec::FrictionLaw), with what holds whatever its coefficients are, and with its steepest rise. The lanes of
 //! a batch have one law with coefficients of their own.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
@@ -13,26 +13,26 @@
 mod cone;
 mod coulomb;
 mod exponential;
-mod friction_law;
 mod lanes;
 mod prakash_clifton;
 mod regularised;
 mod static_kinetic;
 mod table;
+mod traits;
 
 pub(in crate::solver) use cone::project;
 pub use coulomb::Coulomb;
 pub(in crate::solver) use coulomb::Frictionless;
 pub use exponential::Exponential;
-use friction_law::FrictionLaw;
-pub(in crate::solver) use friction_law::{AtNode, FrictionLimit};
 pub(in crate::solver) use lanes::LawOfLanes;
 pub use prakash_clifton::PrakashClifton;
 pub use regularised::Regularised;
 pub use static_kinetic::StaticKinetic;
 pub use table::Table;
+use traits::LawFormula;
+pub(in crate::solver) use traits::{AtNode, FrictionLimit};
 
-use crate::spec::{Contact, FrictionLaw as Name, Memory};
+use crate::spec::{Contact, FrictionLaw, Memory};
 
 /// A friction law with the coefficients of one lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,17 +77,17 @@ impl Law {
     /// The law of a contact. A coefficient that is absent is not a number.
     pub fn of(contact: &Contact) -> Self {
         match contact.law {
-            Name::Coulomb => Self::Coulomb(Coulomb::of(contact)),
-            Name::StaticKinetic => Self::StaticKinetic(StaticKinetic::of(contact)),
-            Name::Exponential => Self::Exponential(Exponential::of(contact)),
-            Name::Regularised => Self::Regularised(Regularised::of(contact)),
-            Name::PrakashClifton => Self::PrakashClifton(PrakashClifton::of(contact)),
-            Name::Table => Self::Table(Table::of(contact)),
+            FrictionLaw::Coulomb => Self::Coulomb(Coulomb::of(contact)),
+            FrictionLaw::StaticKinetic => Self::StaticKinetic(StaticKinetic::of(contact)),
+            FrictionLaw::Exponential => Self::Exponential(Exponential::of(contact)),
+            FrictionLaw::Regularised => Self::Regularised(Regularised::of(contact)),
+            FrictionLaw::PrakashClifton => Self::PrakashClifton(PrakashClifton::of(contact)),
+            FrictionLaw::Table => Self::Table(Table::of(contact)),
         }
     }
 
     /// Its name in a study.
-    pub fn name(&self) -> Name {
+    pub fn name(&self) -> FrictionLaw {
         with_law!(self, own => name_of(own))
     }
 
@@ -122,12 +122,12 @@ impl Law {
     }
 }
 
-fn name_of<W: FrictionLaw<N>, const N: usize>(_: &W) -> Name {
+fn name_of<W: LawFormula<N>, const N: usize>(_: &W) -> FrictionLaw {
     W::NAME
 }
 
 #[inline(always)]
-fn limit_of<W: FrictionLaw<N>, const N: usize>(law: &W, node: &AtNode<f64>, time_step_s: f64) -> f64 {
+fn limit_of<W: LawFormula<N>, const N: usize>(law: &W, node: &AtNode<f64>, time_step_s: f64) -> f64 {
     W::limit_n(law.numbers(time_step_s), node)
 }
 
@@ -154,7 +154,7 @@ mod tests {
         let table = MuOfSpeed(vec![[0.0, 0.5], [0.01, 0.4], [0.05, 0.2], [0.3, 0.25]]);
         let law = |mu| {
             let mu_of_speed = table.clone();
-            Law::of(&Contact { law: Name::Table, mu, mu_of_speed, ..Contact::default() })
+            Law::of(&Contact { law: FrictionLaw::Table, mu, mu_of_speed, ..Contact::default() })
         };
         let time_step_s = 1.0e-7;
         for (mu, law) in [(0.25, law(0.25)), (0.5, law(0.5)), (0.5, law(0.25).with_mu(0.5))] {
@@ -189,7 +189,7 @@ mod tests {
     #[test]
     fn a_law_has_the_name_by_which_it_is_chosen() {
         use strum::VariantArray;
-        for law in Name::VARIANTS {
+        for law in FrictionLaw::VARIANTS {
             let contact = Contact {
                 law: *law,
                 mu: 0.25,

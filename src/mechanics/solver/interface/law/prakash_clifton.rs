@@ -10,9 +10,9 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::friction_law::{AtNode, FrictionLaw, FrictionLimit, given, length};
+use super::traits::{AtNode, FrictionLimit, LawFormula, given, length};
 use crate::solver::real::{Real, decay};
-use crate::spec::{Contact, FrictionLaw as Name};
+use crate::spec::{Contact, FrictionLaw};
 
 /// A limit that approaches μ N within a slip L.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,8 +32,8 @@ impl FrictionLimit<2> for PrakashClifton {
     }
 }
 
-impl FrictionLaw<2> for PrakashClifton {
-    const NAME: Name = Name::PrakashClifton;
+impl LawFormula<2> for PrakashClifton {
+    const NAME: FrictionLaw = FrictionLaw::PrakashClifton;
 
     fn of(contact: &Contact) -> Self {
         Self { mu: contact.mu, length_m: given(contact.length_m) }

@@ -10,9 +10,9 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::friction_law::{AtNode, FrictionLaw, FrictionLimit, given, length};
+use super::traits::{AtNode, FrictionLimit, LawFormula, given, length};
 use crate::solver::real::Real;
-use crate::spec::{Contact, FrictionLaw as Name};
+use crate::spec::{Contact, FrictionLaw};
 
 /// |t| = μ N v/(v + v₀).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,8 +45,8 @@ impl FrictionLimit<2> for Regularised {
     }
 }
 
-impl FrictionLaw<2> for Regularised {
-    const NAME: Name = Name::Regularised;
+impl LawFormula<2> for Regularised {
+    const NAME: FrictionLaw = FrictionLaw::Regularised;
 
     fn of(contact: &Contact) -> Self {
         Self { mu: contact.mu, speed_m_s: given(contact.speed_m_s) }

@@ -9,9 +9,9 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::friction_law::{AtNode, FrictionLaw, FrictionLimit, given, in_proportion};
+use super::traits::{AtNode, FrictionLimit, LawFormula, given, in_proportion};
 use crate::solver::real::Real;
-use crate::spec::{Contact, FrictionLaw as Name};
+use crate::spec::{Contact, FrictionLaw};
 
 /// One coefficient for nodes that begin to slip, and one for nodes that slip.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,8 +30,8 @@ impl FrictionLimit<2> for StaticKinetic {
     }
 }
 
-impl FrictionLaw<2> for StaticKinetic {
-    const NAME: Name = Name::StaticKinetic;
+impl LawFormula<2> for StaticKinetic {
+    const NAME: FrictionLaw = FrictionLaw::StaticKinetic;
 
     fn of(contact: &Contact) -> Self {
         Self { mu: contact.mu, mu_static: given(contact.mu_static) }

@@ -8,9 +8,9 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::friction_law::{AtNode, FrictionLaw, FrictionLimit, length};
+use super::traits::{AtNode, FrictionLimit, LawFormula, length};
 use crate::solver::real::Real;
-use crate::spec::{Contact, FrictionLaw as Name, MOST_PAIRS, Segment};
+use crate::spec::{Contact, FrictionLaw, MOST_PAIRS, Segment};
 
 /// Parts between the pairs of a table.
 const PARTS: usize = MOST_PAIRS - 1;
@@ -51,8 +51,8 @@ impl FrictionLimit<NUMBERS> for Table {
     }
 }
 
-impl FrictionLaw<NUMBERS> for Table {
-    const NAME: Name = Name::Table;
+impl LawFormula<NUMBERS> for Table {
+    const NAME: FrictionLaw = FrictionLaw::Table;
 
     fn of(contact: &Contact) -> Self {
         let scale = contact.mu / contact.mu_of_speed.fast().unwrap_or(f64::NAN);

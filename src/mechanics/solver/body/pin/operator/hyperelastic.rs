@@ -193,6 +193,7 @@ impl HyperelasticOperator {
         for point in 0..8 {
             let h = gradient(simd, &number, &slopes, point);
             let p = match self.elements.law {
+                // J₂ does not come here: its forces and energies are those of `Yielding`.
                 MaterialLaw::NeoHookean | MaterialLaw::J2 => {
                     // P = G (F − (∂J/∂F)/J) + ½λ (θ − 1/θ) ∂J/∂F, with 1 + j = J, 1 + t = θ and ∂J/∂F = 1 + K.
                     let (k, j) = cofactor(&h);
@@ -274,6 +275,7 @@ impl HyperelasticOperator {
                 smallest[slot] = f64::min(smallest[slot], 1.0 + j[slot]);
                 volume[slot] += weight[slot];
                 // `at` is J − 1, or tr E.
+                // J₂ does not come here either.
                 let dilation = |at: f64| match self.elements.law {
                     MaterialLaw::NeoHookean | MaterialLaw::J2 => {
                         0.25 * lambda[slot] * (at * (2.0 + at) - 2.0 * libm::log1p(at))

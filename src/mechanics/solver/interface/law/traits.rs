@@ -1,7 +1,7 @@
 //! What a friction law says about itself, and what it may use.
 
 use crate::solver::real::Real;
-use crate::spec::{Contact, FrictionLaw as Name};
+use crate::spec::{Contact, FrictionLaw};
 
 /// A slave node in contact, before its friction is known: one node (`R` = `f64`), or the nodes of a vector.
 #[derive(Debug, Clone, Copy)]
@@ -30,9 +30,9 @@ pub(in crate::solver) trait FrictionLimit<const N: usize> {
 }
 
 /// A friction law with the coefficients of one lane.
-pub(in crate::solver) trait FrictionLaw<const N: usize>: FrictionLimit<N> + Sized {
-    /// Its name in a study. [`Name`] says what does not depend on the coefficients.
-    const NAME: Name;
+pub(in crate::solver) trait LawFormula<const N: usize>: FrictionLimit<N> + Sized {
+    /// Its name in a study. [`FrictionLaw`] says what does not depend on the coefficients.
+    const NAME: FrictionLaw;
 
     /// The law of a contact. A coefficient that is absent is not a number.
     fn of(contact: &Contact) -> Self;

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 /// Sums and extremes over consecutive steps.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Figures {
+pub struct Sums {
     /// Number of steps. The first and the last step of a cycle count with the fraction that belongs to the
     /// cycle.
     weight: f64,
@@ -77,7 +77,7 @@ impl NodeFigures {
     }
 }
 
-impl Figures {
+impl Sums {
     /// The figures of no step.
     pub const EMPTY: Self = Self {
         weight: 0.0,

@@ -2,8 +2,8 @@
 
 use crate::analysis::signals::{LOAD_N, SQUEAL_HZ, STEP_S, cut, sample, sine};
 use crate::random::Random;
-use tribosweep_mechanics::analysis::figures::Figures;
 use tribosweep_mechanics::analysis::sample::Sample;
+use tribosweep_mechanics::analysis::sums::Sums;
 
 fn random_samples(count: usize) -> Vec<Sample> {
     let mut random = Random::new(31);
@@ -28,21 +28,21 @@ fn random_samples(count: usize) -> Vec<Sample> {
         .collect()
 }
 
-fn sum(samples: &[Sample]) -> Figures {
-    samples.iter().fold(Figures::EMPTY, |mut all, sample| {
+fn sum(samples: &[Sample]) -> Sums {
+    samples.iter().fold(Sums::EMPTY, |mut all, sample| {
         all.add(sample, 1.0);
         all
     })
 }
 
-fn ratios(figures: &Figures) -> [f64; 8] {
-    let [stick, slip, separated] = figures.shares();
+fn ratios(sums: &Sums) -> [f64; 8] {
+    let [stick, slip, separated] = sums.shares();
     [
-        figures.mu_star(),
-        figures.mu_star_contact(),
-        figures.normal_over_load(),
-        figures.stick_reduction(),
-        figures.slip_reduction(),
+        sums.mu_star(),
+        sums.mu_star_contact(),
+        sums.normal_over_load(),
+        sums.stick_reduction(),
+        sums.slip_reduction(),
         stick,
         slip,
         separated,
@@ -52,10 +52,10 @@ fn ratios(figures: &Figures) -> [f64; 8] {
 /// Protects: the shares sum to one for any weights.
 #[test]
 fn shares_sum_to_one() {
-    let mut figures = Figures::EMPTY;
+    let mut sums = Sums::EMPTY;
     for (i, sample) in random_samples(1000).iter().enumerate() {
-        figures.add(sample, [1.0, 0.3, 1.0e-9][i % 3]);
-        assert!((figures.shares().iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        sums.add(sample, [1.0, 0.3, 1.0e-9][i % 3]);
+        assert!((sums.shares().iter().sum::<f64>() - 1.0).abs() < 1e-14);
     }
 }
 
@@ -65,19 +65,13 @@ fn shares_sum_to_one() {
 fn merged_equals_adding_all() {
     let samples = random_samples(1000);
     let all = sum(&samples);
-    let parts: Vec<Figures> = samples.chunks(37).map(sum).collect();
-    let merged = Figures::merged(&parts);
+    let parts: Vec<Sums> = samples.chunks(37).map(sum).collect();
+    let merged = Sums::merged(&parts);
     for (a, b) in ratios(&all).iter().zip(ratios(&merged)) {
         assert!((a - b).abs() < 1e-12, "{a} {b}");
     }
-    let extremes = |figures: &Figures| {
-        [
-            figures.normal_min_n,
-            figures.normal_max_n,
-            figures.sigma_n_max_pa,
-            figures.slip_speed_max_m_s,
-            figures.lift_max_m,
-        ]
+    let extremes = |sums: &Sums| {
+        [sums.normal_min_n, sums.normal_max_n, sums.sigma_n_max_pa, sums.slip_speed_max_m_s, sums.lift_max_m]
     };
     assert_eq!(extremes(&all), extremes(&merged));
     for (a, b) in all.nodes.iter().zip(&merged.nodes) {
@@ -92,7 +86,7 @@ fn merged_equals_adding_all() {
 fn tapered_mean_kills_an_unfinished_oscillation() {
     let mut worst = [0.0_f64; 2];
     for eighth in 0..8 {
-        let windows: Vec<Figures> = (0..40)
+        let windows: Vec<Sums> = (0..40)
             .map(|w| {
                 let samples: Vec<Sample> = (0..50)
                     .map(|n| {
@@ -106,10 +100,8 @@ fn tapered_mean_kills_an_unfinished_oscillation() {
                 sum(&samples)
             })
             .collect();
-        for (worst, figures) in
-            worst.iter_mut().zip([Figures::merged(&windows), Figures::tapered(windows.iter())])
-        {
-            *worst = worst.max((figures.mu_star() - 0.3).abs());
+        for (worst, sums) in worst.iter_mut().zip([Sums::merged(&windows), Sums::tapered(windows.iter())]) {
+            *worst = worst.max((sums.mu_star() - 0.3).abs());
         }
     }
     assert!(worst[0] > 2.0e-3, "the plain mean {worst:?} shows what there is to kill");
@@ -119,9 +111,9 @@ fn tapered_mean_kills_an_unfinished_oscillation() {
 /// Protects: an empty window is recognised as empty, and its figures are finite.
 #[test]
 fn an_empty_window_is_finite() {
-    assert!(Figures::EMPTY.is_empty());
+    assert!(Sums::EMPTY.is_empty());
     assert!(!sum(&random_samples(1)).is_empty());
-    assert!(ratios(&Figures::EMPTY).iter().all(|ratio| ratio.is_finite()), "{:?}", ratios(&Figures::EMPTY));
+    assert!(ratios(&Sums::EMPTY).iter().all(|ratio| ratio.is_finite()), "{:?}", ratios(&Sums::EMPTY));
 }
 
 /// Protects: the step in which a cycle ends is divided between the two cycles without loss. So the mean over
@@ -141,7 +133,7 @@ fn cycles_share_their_last_step() {
     }
     for window in [&cycles[..], &cycles[3..4], &cycles[7..29]] {
         let (start_s, end_s) = (window[0].start_s, window[window.len() - 1].end_s);
-        let found = Figures::merged(window.iter().map(|cycle| &cycle.figures)).mu_star();
+        let found = Sums::merged(window.iter().map(|cycle| &cycle.sums)).mu_star();
         // The samples form a staircase. This is its integral up to a time with the fraction θ of a step.
         let stairs = |time_s: f64| {
             let whole = (time_s / STEP_S).floor();
