@@ -80,7 +80,9 @@ fn memory(forecast: &Forecast) -> String {
 fn time(forecast: &Forecast) -> String {
     let with = with(forecast.threads);
     let Some(TimeRange { low, high, limit, .. }) = forecast.time else {
-        return "none: no job is left".to_owned();
+        let why =
+            if forecast.has_modes_left { "unknown: modes have no forecast" } else { "none: no job is left" };
+        return why.to_owned();
     };
     if limit < SHORT {
         return format!("less than {} s with {with} here", SHORT.as_secs());

@@ -12,8 +12,11 @@ use super::work::{Threads, options, work_on};
 use crate::analysis::stability::MODES;
 use crate::exit;
 use crate::publish::table::Format;
+use crate::publish::value::significant;
 use crate::queue::{Location, Shard};
-use crate::report::{Along, SHAPES, STABILITY_PAGE, ShownModes, modes_table, thresholds_table};
+use crate::report::{
+    Along, SHAPES, STABILITY_PAGE, ShownModes, StabilityPoint, modes_table, thresholds_table,
+};
 use crate::study::number_in;
 use crate::sweep::Plan;
 use crate::sweep::{
@@ -38,8 +41,8 @@ pub(crate) struct Args {
     /// Number of modes at each point in the table, the fastest growing first.
     #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u8).range(1..=MODES as i64))]
     modes: u8,
-    /// Show the modes whose frequencies are nearest to this one, the nearest first, instead of those that grow fastest. The 12
-    /// fastest growing modes of a point are known. Without a unit it is in Hz.
+    /// Behind the modes that grow, show those whose frequencies are nearest to this one. The 12 fastest growing modes of a point are
+    /// known. Without a unit it is in Hz.
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency_hz)]
     near: Option<f64>,
     /// Write the shapes of the modes in the table for ParaView, into the folder `modes` of the report. The grid may have 50
@@ -92,6 +95,15 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             stream(|out| Ok(table.write(Format::JsonLines, out)?))?;
         } else {
             print(&table.rounded(DIGITS).text())?;
+            let has_more = |point: &&StabilityPoint| point.on_grid && point.stability.modes.len() == MODES;
+            let slowest = points.iter().filter(has_more).filter_map(|point| point.stability.modes.last());
+            let decay = slowest.map(|mode| -mode.growth_rate_per_s).fold(f64::INFINITY, f64::min);
+            if args.near.is_some() && decay.is_finite() {
+                print(&format!(
+                    "Modes that decay faster than {} 1/s may be nearer to this frequency: {MODES} modes of a point are known.\n",
+                    significant(decay, 3)
+                ))?;
+            }
             if wanted.is_some() && !points.is_empty() {
                 let (table, notes) = thresholds_table(&points, &shown);
                 print(&format!("\nThresholds\n{}", table.rounded(DIGITS).text()))?;

@@ -38,9 +38,9 @@ impl JobProgress {
         let _ = self.ending.set(ending);
     }
 
-    /// The simulated time [s] at which it ends at the latest; `None` before it has begun.
+    /// The simulated time [s] at which it ends at the latest; `None` before it has begun, and for modes, which simulate nothing.
     pub fn limit_s(&self) -> Option<f64> {
-        self.ending.get().map(|ending| ending.limit_s)
+        self.ending.get().filter(|ending| ending.has_run).map(|ending| ending.limit_s)
     }
 
     /// The share of its work that is likely to be left, from 0 to 1.

@@ -67,6 +67,26 @@ fn modes_of_a_study_in_one_command() {
         assert_eq!(object["growth_rate_per_s"].as_f64().unwrap(), number(row, "growth_rate_per_s"));
         assert_eq!(object["converged"], true);
     }
+
+    // Modes that grow stay first, and the others come in the order of their distance.
+    let near = folder.ok("stability study.json --modes 12 --near 20kHz --json");
+    let near: Vec<Value> = near.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let of = |row: &Value, name: &str| row[name].as_f64().unwrap();
+    let place = |row: &Value| {
+        let distance =
+            if of(row, "growth_rate_per_s") >= 0.0 { 0.0 } else { (of(row, "frequency_hz") - 2.0e4).abs() };
+        (of(row, "mu"), of(row, "omega_rpm"), distance)
+    };
+    for pair in near
+        .windows(2)
+        .filter(|pair| pair[0]["mu"] == pair[1]["mu"] && pair[0]["omega_rpm"] == pair[1]["omega_rpm"])
+    {
+        assert!(place(&pair[0]).2 <= place(&pair[1]).2, "{pair:?}");
+    }
+    assert!(near.iter().any(|row| of(row, "growth_rate_per_s") > 0.0));
+    assert_ne!(near[0]["mode"].as_u64(), Some(1), "the order by distance is that of growth: {near:?}");
+    let text = folder.ok("stability study.json --modes 1 --near 20kHz");
+    assert!(text.contains("may be nearer to this frequency"), "{text}");
 }
 
 /// Protects: the same command again computes nothing, a wider grid computes only what is new, and nothing that was computed

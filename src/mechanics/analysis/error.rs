@@ -22,7 +22,7 @@ pub enum JobError {
     Stability(#[from] StabilityError),
     /// The time step is too small for the length of the run.
     #[error(
-        "run.limit_s = {limit_s:e} s takes {steps:.1e} steps of {time_step_s:.3e} s, more than the {MAX_STEPS:.0e} \
+        "run.limit_s = {limit_s} s takes {steps:.1e} steps of {time_step_s:.3e} s, more than the {MAX_STEPS:.0e} \
          that a run may have: look for an extreme material, damping or holder, or give a shorter limit or a longer step"
     )]
     TooManySteps {

@@ -242,6 +242,8 @@ pub struct Ending {
     pub late_s: f64,
     /// The limit.
     pub limit_s: f64,
+    /// Whether these are times of a run. Modes have none, and these times stand for what they take.
+    pub has_run: bool,
 }
 
 /// Ends of jobs after the ramp, in decay observations, without the cycles that count: early, likely, late.
@@ -260,11 +262,11 @@ impl Ending {
         if spec.stability == StabilityMethod::Modes {
             // There is no run, but modes take as long as a short one.
             let limit_s = MODES * spec.observation_s();
-            return Self { early_s: limit_s, likely_s: limit_s, late_s: limit_s, limit_s };
+            return Self { early_s: limit_s, likely_s: limit_s, late_s: limit_s, limit_s, has_run: false };
         }
         let limit_s = spec.run.limit_s;
         if !spec.run.stop_early || !spec.scene.program.is_constant() {
-            return Self { early_s: limit_s, likely_s: limit_s, late_s: limit_s, limit_s };
+            return Self { early_s: limit_s, likely_s: limit_s, late_s: limit_s, limit_s, has_run: true };
         }
         let pin = &spec.scene.pin;
         let shear =
@@ -274,7 +276,7 @@ impl Ending {
             let end = spec.scene.load.ramp_s + observations * spec.observation_s() + cycles_s;
             end.min(limit_s)
         });
-        Self { early_s, likely_s, late_s, limit_s }
+        Self { early_s, likely_s, late_s, limit_s, has_run: true }
     }
 
     /// The share of the job's work that is left after `simulated_s` seconds, from 0 to 1.

@@ -236,8 +236,12 @@ impl JobSpec {
                     "scene.disk.ring.track_arc_deg",
                     arc_deg,
                     format!(
-                        "at least {:.4}, the arc that the pin sweeps at {} rpm during run.limit_s = {} s, or 360",
-                        swept_deg.min(360.0),
+                        "{}, the arc that the pin sweeps at {} rpm during run.limit_s = {} s",
+                        if swept_deg < 360.0 {
+                            format!("360, or at least {swept_deg:.4}")
+                        } else {
+                            "360".to_owned()
+                        },
                         self.scene.disk.omega_rpm,
                         self.run.limit_s
                     ),

@@ -222,7 +222,8 @@ fn friction(spec: &JobSpec) -> Option<Doubt> {
             "less than mu = {}, so that friction rises as soon as a node slips; are the two exchanged?",
             short(contact.mu)
         ),
-        help: "mu_static is the coefficient without slip, and mu that of fast slip".to_owned(),
+        help: "mu_static is the coefficient without slip, and mu that of fast slip; if measured friction rises with the speed, this is right"
+            .to_owned(),
     })
 }
 

@@ -38,9 +38,12 @@ pub struct Forecast {
     pub groups: Vec<Group>,
     /// Number of threads.
     pub threads: usize,
-    /// The time for the jobs that are left; `None` if none is left.
+    /// The time for the jobs that are left; `None` if none is left, or if modes are left.
     #[serde(rename = "time_s")]
     pub time: Option<TimeRange>,
+    /// Whether modes without a run are left. How long they take is not forecast: it depends on what is in contact and, on an elastic
+    /// disk, on the factors of a sparse matrix.
+    pub has_modes_left: bool,
     /// What the time is based on.
     pub speed: Speed,
     /// Memory \[byte\] of the process at its largest, with one batch on each thread.
@@ -142,15 +145,17 @@ impl Forecast {
         };
         let mut tasks = Tasks::default();
         let mut left = 0;
+        let mut has_modes_left = false;
         for (job, workload) in plan.jobs().iter().zip(plan.workloads()) {
             if is_left(job) {
                 left += 1;
+                has_modes_left |= !job.spec.has_run();
                 let earliest = earliest_end(&job.spec).and_then(|spec| Workload::estimate(&spec).ok());
                 tasks.add(workload, earliest.as_ref().unwrap_or(workload), Ending::of(&job.spec));
             }
         }
         let threads = threads.min(plan.jobs().len()).max(1);
-        let time = tasks.time(threads, speed);
+        let time = tasks.time(threads, speed).filter(|_| !has_modes_left);
         let groups = groups(plan, threads);
         let running = running(&groups, threads);
         let is_long = time.as_ref().is_some_and(|time| time.longest_job >= LONG_JOB);
@@ -172,6 +177,7 @@ impl Forecast {
             groups,
             threads,
             time,
+            has_modes_left,
             speed,
         })
     }

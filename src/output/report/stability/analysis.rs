@@ -12,7 +12,11 @@ use crate::report::row::{JobRow, RowState};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
 use crate::units::name_and_unit;
+use indexmap::IndexMap;
 use serde_json::Value;
+
+/// The largest number of further modes that a note names.
+const MOST_NAMED: usize = 3;
 
 /// The points as rows, so that a [`Layout`] can group them. The key of a row is the number of its point. Parameters that move along
 /// the way of the thresholds do not tell groups apart: the rows do not say them.
@@ -154,12 +158,20 @@ impl<'a> Analysis<'a> {
                 self.along.with_in_words("changes", "change")
             ));
         }
+        // The other modes, each where it begins to grow for the first time.
         let first = speed.onsets.first().map(|onset| onset.branch);
-        let more: std::collections::BTreeSet<usize> =
-            speed.onsets.iter().map(|onset| onset.branch).filter(|branch| Some(*branch) != first).collect();
+        let mut more: IndexMap<usize, String> = IndexMap::new();
+        for onset in speed.onsets.iter().filter(|onset| Some(onset.branch) != first) {
+            let words =
+                || format!("{} from {}", value::quantity(onset.frequency_hz, "Hz"), value_of(onset.mu));
+            more.entry(onset.branch).or_insert_with(words);
+        }
         if !more.is_empty() {
             let verb = if more.len() == 1 { "grows, too" } else { "grow, too" };
-            words.push(format!("{} {verb}", value::count(more.len() as u32, "more mode")));
+            let named: Vec<&str> = more.values().take(MOST_NAMED).map(String::as_str).collect();
+            let rest = if more.len() > MOST_NAMED { ", …" } else { "" };
+            let count = value::count(more.len() as u32, "more mode");
+            words.push(format!("{count} {verb}: {}{rest}", named.join(", ")));
         }
         words.join("; ")
     }

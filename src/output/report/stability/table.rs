@@ -45,7 +45,8 @@ const ABOVE: &str = "what is known above band_hz: nothing is there, damped, coar
 pub struct ShownModes {
     /// The largest number of modes.
     pub count: usize,
-    /// Modes are shown in the order of their distance from this frequency (Hz); `None` if the fastest growing ones come first.
+    /// Modes that grow come first, and then the others in the order of their distance from this frequency (Hz); `None` if all are in the
+    /// order of their growth.
     pub near_hz: Option<f64>,
 }
 
@@ -55,11 +56,14 @@ impl ShownModes {
 
     /// Indices of the modes that are shown, in their order, among those of a point, whose first one grows fastest.
     pub fn of<'a>(self, modes: impl IntoIterator<Item = &'a ComplexMode>) -> Vec<usize> {
-        let frequencies: Vec<f64> = modes.into_iter().map(|mode| mode.frequency_hz).collect();
-        let mut shown: Vec<usize> = (0..frequencies.len()).collect();
+        let modes: Vec<&ComplexMode> = modes.into_iter().collect();
+        let mut shown: Vec<usize> = (0..modes.len()).collect();
         if let Some(near_hz) = self.near_hz {
-            let distance = |index: &usize| (frequencies[*index] - near_hz).abs();
-            shown.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let distance = |index: usize| {
+                let ComplexMode { frequency_hz, growth_rate_per_s, .. } = *modes[index];
+                if growth_rate_per_s >= 0.0 { 0.0 } else { (frequency_hz - near_hz).abs() }
+            };
+            shown.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
         }
         shown.truncate(self.count);
         shown
