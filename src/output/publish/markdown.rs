@@ -153,8 +153,9 @@ pub fn escape(text: &str) -> String {
         .replace('`', "\\`")
         // Without these a bracket is no link, and units in brackets stay readable.
         .replace("](", "\\](")
-        .replace("][", "\\][")
-        .replace("]:", "\\]:");
+        .replace("][", "\\][");
+    // Only at the beginning of a line such a bracket is the address of a link.
+    let line = if line.starts_with('[') { line.replace("]:", "\\]:") } else { line };
     // Words beside another span keep their distance from it.
     format!(
         "{}{line}{}",
