@@ -196,7 +196,9 @@ pub(crate) fn warn(forecast: &Forecast) {
 /// Says before the work how long it takes, unless it is short.
 pub(crate) fn announce(forecast: &Forecast) {
     warn(forecast);
-    if forecast.time.is_some_and(|time| time.limit >= SHORT) {
+    if forecast.has_modes_left {
+        log(format_args!("expected time: {}", time(forecast)));
+    } else if forecast.time.is_some_and(|time| time.limit >= SHORT) {
         log(format_args!("expected time: {}, at {}", time(forecast), speed(forecast)));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use crate::publish::write_atomically;
-use crate::study::printable_lines;
+use crate::units::printable_lines;
 use std::fmt::Display;
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::Path;

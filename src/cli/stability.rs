@@ -41,8 +41,8 @@ pub(crate) struct Args {
     /// Number of modes at each point in the table, the fastest growing first.
     #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u8).range(1..=MODES as i64))]
     modes: u8,
-    /// Behind the modes that grow, show those whose frequencies are nearest to this one. The 12 fastest growing modes of a point are
-    /// known. Without a unit it is in Hz.
+    /// Show all modes that grow, and of the others those whose frequencies are nearest to this one. The 12 fastest growing modes of a
+    /// point are known. Without a unit it is in Hz.
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency_hz)]
     near: Option<f64>,
     /// Write the shapes of the modes in the table for ParaView, into the folder `modes` of the report. The grid may have 50
@@ -88,6 +88,9 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         let points = read_stability(queue, &name).await?;
         let modes = ShownModes { count: args.modes.into(), near_hz: args.near };
         let table = modes_table(points.iter().filter(|point| point.on_grid), modes);
+        if args.near.is_some() {
+            note_unknown_modes(&points);
+        }
         if let Some(path) = &args.csv {
             fill_file(path, |out| Ok(table.write(Format::Csv, out)?))?;
         }
@@ -95,15 +98,6 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             stream(|out| Ok(table.write(Format::JsonLines, out)?))?;
         } else {
             print(&table.rounded(DIGITS).text())?;
-            let has_more = |point: &&StabilityPoint| point.on_grid && point.stability.modes.len() == MODES;
-            let slowest = points.iter().filter(has_more).filter_map(|point| point.stability.modes.last());
-            let decay = slowest.map(|mode| -mode.growth_rate_per_s).fold(f64::INFINITY, f64::min);
-            if args.near.is_some() && decay.is_finite() {
-                print(&format!(
-                    "Modes that decay faster than {} 1/s may be nearer to this frequency: {MODES} modes of a point are known.\n",
-                    significant(decay, 3)
-                ))?;
-            }
             if wanted.is_some() && !points.is_empty() {
                 let (table, notes) = thresholds_table(&points, &shown);
                 print(&format!("\nThresholds\n{}", table.rounded(DIGITS).text()))?;
@@ -126,6 +120,19 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         log(format_args!("report written to {}", folder.join(STABILITY_PAGE).display()));
         Ok(code)
     })
+}
+
+/// Says which modes may be nearer to a frequency than those that are known.
+fn note_unknown_modes(points: &[StabilityPoint]) {
+    let has_more = |point: &&StabilityPoint| point.on_grid && point.stability.modes.len() == MODES;
+    let slowest = points.iter().filter(has_more).filter_map(|point| point.stability.modes.last());
+    let largest = slowest.map(|mode| mode.growth_rate_per_s).fold(f64::NEG_INFINITY, f64::max);
+    if largest.is_finite() {
+        log(format_args!(
+            "{MODES} modes of a point are known: those whose growth rates are below {} 1/s may be nearer to this frequency",
+            significant(largest, 3)
+        ));
+    }
 }
 
 /// What thresholds are thresholds of; none if the study varies no number in a way that has them.

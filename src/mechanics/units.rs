@@ -1,4 +1,9 @@
-//! Units: those at the ends of names, conversions to SI, and durations in units for a reader.
+//! Units: those at the ends of names, conversions to SI, and durations in units for a reader. Texts of strangers, as a terminal may
+//! show them.
+
+mod printable;
+
+pub use printable::{printable, printable_lines};
 
 use serde::Serializer;
 use std::f64::consts::PI;

@@ -2,7 +2,7 @@
 
 use super::limits::MAX_JOBS;
 use super::locate::Position;
-use super::printable::printable;
+use crate::units::printable;
 use serde::Serialize;
 use std::fmt;
 

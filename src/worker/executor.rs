@@ -34,7 +34,8 @@ impl Executor {
             .num_threads(threads)
             .thread_name(|i| format!("solver-{i}"))
             .build()?;
-        let structures = Structures::default();
+        let stop = interrupt.clone();
+        let structures = Structures::stopped_when(move || stop.is_raised());
         let replies = (0..threads).map(|thread| {
             let (sender, replies) = channel();
             let channel = WorkerChannel {

@@ -73,6 +73,7 @@ pub fn outcome(
             },
             Err(error) => FinishedOutcome::Failed { error: format!("unwritable record: {error}") },
         },
+        Err(JobError::Interrupted) => FinishedOutcome::Released,
         Err(error) => FinishedOutcome::Failed { error: error.to_string() },
     }
 }

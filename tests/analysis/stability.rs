@@ -3,8 +3,10 @@
 use super::signals::coarse;
 use tribosweep_mechanics::analysis::lanes::{AnyLanes, one_lane};
 use tribosweep_mechanics::analysis::nested::Beginning;
+use tribosweep_mechanics::analysis::stability::{Verdict, judge};
 use tribosweep_mechanics::analysis::{
-    AboveBand, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
+    AboveBand, JobError, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Structures, Unobserved,
+    solve,
 };
 use tribosweep_mechanics::solver::Model;
 use tribosweep_mechanics::spec::{ClampSide, JobSpec, Precision, Shape, StabilityMethod};
@@ -13,6 +15,19 @@ fn short(method: StabilityMethod) -> JobSpec {
     let mut spec = JobSpec { stability: method, ..coarse() };
     spec.run.limit_s = 0.002;
     spec
+}
+
+/// Protects: who interrupts a search by sparse factors does not wait for its end, and the job is given back and has not failed.
+#[test]
+fn a_search_for_modes_is_interrupted() {
+    let mut spec = short(StabilityMethod::Modes);
+    // A tilted pin has sparse factors.
+    spec.scene.pin.tilt_x_deg = Some(1.0e-12);
+    let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
+    let asked = |structures: &Structures| judge(&spec, &model, &Beginning::REST, structures);
+    assert!(matches!(asked(&Structures::default()), Ok(Verdict::Decided(_))));
+    assert!(matches!(asked(&Structures::stopped_when(|| true)), Err(JobError::Interrupted)));
+    assert!(matches!(asked(&Structures::stopped_when(|| false)), Ok(Verdict::Decided(_))));
 }
 
 /// Protects: a job that runs has its eigenvalues in its record, also if it is continued from a checkpoint by a program that

@@ -85,8 +85,12 @@ fn modes_of_a_study_in_one_command() {
     }
     assert!(near.iter().any(|row| of(row, "growth_rate_per_s") > 0.0));
     assert_ne!(near[0]["mode"].as_u64(), Some(1), "the order by distance is that of growth: {near:?}");
-    let text = folder.ok("stability study.json --modes 1 --near 20kHz");
-    assert!(text.contains("may be nearer to this frequency"), "{text}");
+    // One mode that decays stands beside all that grow, and what is not known is said.
+    let run = folder.command("stability study.json --modes 1 --near 20kHz --json").assert().code(0);
+    assert!(stderr(&run).contains("may be nearer to this frequency"), "{}", stderr(&run));
+    let few = stdout(&run).lines().count();
+    let growing = near.iter().filter(|row| of(row, "growth_rate_per_s") >= 0.0).count();
+    assert_eq!(few, growing + 4, "{growing} modes grow at four points");
 }
 
 /// Protects: the same command again computes nothing, a wider grid computes only what is new, and nothing that was computed

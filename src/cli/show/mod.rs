@@ -7,8 +7,9 @@ use super::output::{print, terminal_width};
 use crate::exit;
 use crate::publish::value::utc_iso;
 use crate::queue::Location;
-use crate::study::{inputs, json_value, printable_lines};
+use crate::study::{inputs, json_value};
 use crate::sweep::{self, Purpose, StoredJob, StudyOfJob};
+use crate::units::printable_lines;
 use serde_json::{Map, Value, json};
 
 /// Arguments of `show`.

@@ -43,7 +43,8 @@ pub(super) fn write(
     folder: &Path,
 ) -> Result<u8, CliError> {
     let interrupt = foreground::interrupt();
-    let structures = Structures::default();
+    let stop = interrupt.clone();
+    let structures = Structures::stopped_when(move || stop.is_raised());
     let mut files = Folder::create(folder, "modes")?;
     let (mut code, mut written) = (exit::SUCCESS, 0);
     // All shapes of a large study at once would need too much memory.

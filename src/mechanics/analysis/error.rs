@@ -19,7 +19,7 @@ pub enum JobError {
     Solver(#[from] SolverError),
     /// A job without a run has no eigenvalues.
     #[error(transparent)]
-    Stability(#[from] StabilityError),
+    Stability(StabilityError),
     /// The time step is too small for the length of the run.
     #[error(
         "run.limit_s = {limit_s} s takes {steps:.1e} steps of {time_step_s:.3e} s, more than the {MAX_STEPS:.0e} \
@@ -66,9 +66,18 @@ pub enum JobError {
         /// The key of the job that it continues.
         parent: String,
     },
-    /// The observer asked to stop.
+    /// The observer, or who asked for the eigenvalues, wants to stop.
     #[error("interrupted")]
     Interrupted,
+}
+
+impl From<StabilityError> for JobError {
+    fn from(error: StabilityError) -> Self {
+        match error {
+            StabilityError::Interrupted => Self::Interrupted,
+            other => Self::Stability(other),
+        }
+    }
 }
 
 /// Largest share of a slip speed by which friction may change it in a step at a node with the mean normal force: μ′ N Δt over the node's

@@ -3,7 +3,7 @@
 //! ```text
 //! solver state ─► sample ─► cycles ─► steady (periodic?) ─┐
 //!                     ├───► decay (stable?) ──────────────┼─► lane ─► record
-//!                     ├───► sums (means, extremes) ────┤
+//!                     ├───► sums (means, extremes) ───────┤
 //!                     └───► program (windows, hysteresis) ┘
 //! ```
 //!

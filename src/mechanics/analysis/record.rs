@@ -28,7 +28,7 @@ pub struct EnergyTotals {
     pub contact_loss_j: f64,
 }
 
-/// Sums of one observed contact node over the averaging window.
+/// Figures of one observed contact node over the averaging window.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ObservedNode {
     /// `front_centre` (leading end) or `rear_centre` (trailing end).

@@ -13,7 +13,7 @@ use crate::solver::interface::SlaveNode;
 use crate::solver::interface::solve::Solves;
 use crate::solver::{Drive, Model};
 use crate::spec::{JobSpec, Precision, StabilityMethod};
-use crate::stability::{Decision, Equilibrium, Mode, SlidingPoint, StabilityError, Structure};
+use crate::stability::{Decision, Equilibrium, Mode, SlidingPoint, StabilityError, Stop, Structure};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -40,9 +40,16 @@ type Shared = Arc<OnceLock<Result<Structure, StabilityError>>>;
 pub struct Structures {
     /// By [`JobSpec::shared_part`], the most recent first.
     recent: Arc<Mutex<Vec<(JobSpec, Shared)>>>,
+    stop: Stop,
 }
 
 impl Structures {
+    /// Structures of no model yet, whose long searches for modes end with [`JobError::Interrupted`] when `is_asked` tells that somebody
+    /// asked to stop.
+    pub fn stopped_when(is_asked: impl Fn() -> bool + Send + Sync + 'static) -> Self {
+        Self { stop: Stop::when(is_asked), ..Self::default() }
+    }
+
     fn of(&self, spec: &JobSpec) -> Shared {
         // A structure is the same for both precisions.
         let mut part = spec.shared_part();
@@ -64,7 +71,7 @@ impl Structures {
         ask: impl FnOnce(&Structure) -> Result<T, StabilityError>,
     ) -> Result<T, StabilityError> {
         let shared = self.of(spec);
-        match shared.get_or_init(|| Structure::new(model)) {
+        match shared.get_or_init(|| Ok(Structure::new(model)?.stopped_by(self.stop.clone()))) {
             Ok(structure) => ask(structure),
             Err(error) => Err(error.clone()),
         }
@@ -131,8 +138,10 @@ pub fn judge(
             let decide = |structure: &Structure| {
                 structure.decide(model, &drive(spec), DECIDING_MODES, coarser_decayed)
             };
-            let Ok((point, verdict, is_safely_stable)) = structures.with(spec, model, decide) else {
-                return Ok(Verdict::Undecided(None));
+            let (point, verdict, is_safely_stable) = match structures.with(spec, model, decide) {
+                Ok(found) => found,
+                Err(StabilityError::Interrupted) => return Err(JobError::Interrupted),
+                Err(_) => return Ok(Verdict::Undecided(None)),
             };
             let mut record = record(spec, model, &point, Outcome::Decayed);
             // A decided job is stable as far as anybody can know without its run.

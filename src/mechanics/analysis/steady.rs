@@ -179,35 +179,35 @@ const NAMES: [&str; FIGURES] = [
     "sigma_n_max",
     "amplitude of N",
 ];
-/// Sums from this index on are compared relative to their mean.
+/// Figures from this index on are compared relative to their mean.
 const FIRST_RELATIVE: usize = 5;
 
 fn figures_of(group: &[Cycle]) -> [f64; FIGURES] {
-    let figures = Sums::merged(group.iter().map(|cycle| &cycle.sums));
-    let [stick, slip, separated] = figures.shares();
+    let sums = Sums::merged(group.iter().map(|cycle| &cycle.sums));
+    let [stick, slip, separated] = sums.shares();
     [
-        figures.mu_star(),
-        figures.normal_over_load(),
+        sums.mu_star(),
+        sums.normal_over_load(),
         stick,
         slip,
         separated,
         group[group.len() - 1].end_s - group[0].start_s,
-        figures.sigma_n_max_pa,
+        sums.sigma_n_max_pa,
         group.iter().map(|cycle| cycle.amplitude_n).fold(0.0, f64::max),
     ]
 }
 
 /// The figures of a group of cycles of the holder.
 fn figures_of_swing(group: &[Cycle]) -> [f64; FIGURES] {
-    let figures = Sums::merged(group.iter().map(|cycle| &cycle.sums));
-    let [stick, slip, separated] = figures.shares();
+    let sums = Sums::merged(group.iter().map(|cycle| &cycle.sums));
+    let [stick, slip, separated] = sums.shares();
     let of_both = |cycle: &Cycle| {
         let of_normal_n = 0.5 * (cycle.sums.normal_max_n - cycle.sums.normal_min_n);
         libm::hypot(cycle.amplitude_n, of_normal_n)
     };
     [
-        figures.mu_star_contact(),
-        figures.normal_over_load(),
+        sums.mu_star_contact(),
+        sums.normal_over_load(),
         stick,
         slip,
         separated,

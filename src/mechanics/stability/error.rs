@@ -5,6 +5,9 @@ use thiserror::Error;
 /// Why there are no modes.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum StabilityError {
+    /// Somebody asked to stop.
+    #[error("interrupted")]
+    Interrupted,
     /// The contact of the pin with the disk has no equilibrium that was found.
     #[error("steady sliding has no equilibrium at mu = {mu}")]
     NoEquilibrium {

@@ -18,6 +18,7 @@ mod sliding;
 mod solve;
 mod space;
 mod sparse;
+mod stop;
 mod vibration;
 
 pub use error::StabilityError;
@@ -42,6 +43,7 @@ use solve::Bilateral;
 use space::{Elasticity, Space};
 pub use sparse::{ModesNear, SparseStructure};
 use std::sync::{Arc, Mutex, PoisonError};
+pub use stop::Stop;
 
 /// What all points of a model share: everything that does not depend on friction, speed and load.
 #[derive(Debug)]
@@ -82,6 +84,15 @@ impl Structure {
         } else {
             Self::Sparse(Box::new(SparseStructure::new(model)?))
         })
+    }
+
+    /// The structure whose search by sparse factors, which may take minutes, ends when `stop` asks it to.
+    #[must_use]
+    pub fn stopped_by(mut self, stop: Stop) -> Self {
+        if let Self::Sparse(structure) = &mut self {
+            structure.stop = stop;
+        }
+        self
     }
 
     /// Checks whether [`Structure::new`] takes as many unknowns as the model has, without making anything.

@@ -1,6 +1,7 @@
 //! Pages as Markdown that is readable as plain text too.
 
 use super::page::{Block, Figure, Grid, Page, Span, Text, Tile};
+use crate::units::{printable, printable_lines};
 use std::fmt::Write;
 
 /// Blocks below one another.
@@ -69,9 +70,9 @@ fn write_block(out: &mut String, block: &Block) {
             }
         }
         Block::Code(text) => {
-            // A fence that the text does not have.
-            let fence = if text.contains("```") { "~~~~~~" } else { "```" };
-            let _ = write!(out, "{fence}\n{}\n{fence}\n\n", text.trim_end());
+            let text = printable_lines(text.trim_end());
+            let fence = "`".repeat(longest_run(&text, '`').max(2) + 1);
+            let _ = write!(out, "{fence}\n{text}\n{fence}\n\n");
         }
     }
 }
@@ -169,10 +170,14 @@ fn code(text: &str) -> String {
     format!("`{}`", one_line(text).replace('`', "'"))
 }
 
-/// Words with one space between them. A character that controls a terminal is replaced.
+/// Words with one space between them, and nothing that a terminal obeys.
 fn one_line(text: &str) -> String {
-    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    line.replace(char::is_control, "\u{fffd}")
+    printable(&text.split_whitespace().collect::<Vec<_>>().join(" ")).into_owned()
+}
+
+/// The length of the longest run of a character.
+fn longest_run(text: &str, of: char) -> usize {
+    text.split(|c| c != of).map(str::len).max().unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -223,6 +228,8 @@ mod tests {
     fn texts_are_no_links() {
         assert_eq!(escape("a [b](https://c.de) [f [Hz]"), "a [b\\](https://c.de) [f [Hz]");
         assert_eq!(escape("[a][b] [b]: c"), "[a\\][b] [b\\]: c");
-        assert_eq!(escape("red \u{1b}[31m"), "red \u{fffd}[31m");
+        assert_eq!(escape("red \u{1b}[31m \u{202e}"), "red \\u{1b}[31m \\u{202e}");
+        let code = of_blocks(&[Block::Code("```\n~~~~~~\n[a](b)\n````\n\u{1b}[31m".to_owned())]);
+        assert_eq!(code, "`````\n```\n~~~~~~\n[a](b)\n````\n\\u{1b}[31m\n`````\n\n");
     }
 }

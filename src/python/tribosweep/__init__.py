@@ -162,18 +162,22 @@ def stability(
     out: str | os.PathLike[str] | None = None,
     preset: str | None = None,
     modes: int = 4,
+    near: float | str | None = None,
     threads: int | None = None,
     replace: bool = False,
     settings: Mapping[str, Any] | None = None,
 ) -> pandas.DataFrame:
     """Computes the complex modes of steady sliding at the points of a study, and returns a row for each of `modes` modes of each point.
 
+    With `near`, a frequency in Hz or with a unit (`"11kHz"`), the rows are those of all modes that grow and of the nearest others.
     The thresholds are in `thresholds.csv` of the report.
 
     Raises Error if the study or the database is refused, or if the computation was interrupted.
     """
     frames = _pandas()
     options = _options(db, out, threads, replace) + [f"--modes={modes}", "--json"]
+    if near is not None:
+        options.append(f"--near={near}")
     with _file_of(study) as path:
         changes = _changes(preset, settings)
         text, doubts = call(["stability", path, *changes, *options], codes=WITH_RESULTS, progress_of=_path_of(db))

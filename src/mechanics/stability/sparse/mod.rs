@@ -9,6 +9,7 @@ use super::bound::{self, Coupling};
 use super::error::StabilityError;
 use super::friction::SlidingFriction;
 use super::sliding::{Equilibrium, Mode, SlidingPoint};
+use super::stop::Stop;
 use crate::solver::{Drive, Model};
 use arnoldi::{Found, Near, near};
 use bodies::{Bodies, Form};
@@ -42,6 +43,7 @@ const OVERLAP: f64 = 1.15;
 pub struct SparseStructure {
     bodies: Bodies,
     band_hz: f64,
+    pub(super) stop: Stop,
 }
 
 /// The eigenvalues near one frequency.
@@ -71,13 +73,44 @@ impl SparseStructure {
     pub fn new(model: &Model) -> Result<Self, StabilityError> {
         check_size(model)?;
         let bodies = Bodies::new(model);
-        Ok(Self { bodies, band_hz: BAND / (4.0 * model.pin().shear_transit_s()) })
+        Ok(Self { bodies, band_hz: BAND / (4.0 * model.pin().shear_transit_s()), stop: Stop::default() })
+    }
+
+    /// Adds the eigenvalues between two frequencies \[1/s\] from the lower one on, with at most `most` searches, the first of which is to
+    /// be `width` wide. Returns the frequency up to which none is missing.
+    fn beyond(
+        &self,
+        system: &System,
+        damping_s: f64,
+        [from, to]: [f64; 2],
+        width: f64,
+        most: usize,
+        all: &mut Vec<Found>,
+    ) -> Result<f64, StabilityError> {
+        let (mut reached, mut width) = (from, width);
+        for _ in 0..most {
+            if reached >= to || width < NARROWEST * reached {
+                break;
+            }
+            self.stop.check()?;
+            let middle = reached + 0.5 * width;
+            let Near { found, radius_per_s } =
+                near(&system.matrices, damping_s, c64::new(0.0, middle), STEPS)?;
+            all.extend(found);
+            let covered = radius_per_s / OVERLAP;
+            if covered >= 0.5 * width {
+                reached = middle + covered;
+            }
+            // A radius of the same size is likely next to it.
+            width = if radius_per_s > 0.0 { (1.8 * covered).min(to) } else { 0.5 * width };
+        }
+        Ok(reached.min(to))
     }
 
     /// Equilibrium and the leading `count` modes of the band.
     ///
     /// # Errors
-    /// If there is no equilibrium, or if an iteration does not converge.
+    /// If there is no equilibrium, if an iteration does not converge, or if somebody asked to stop.
     pub fn point(&self, model: &Model, drive: &Drive, count: usize) -> Result<SlidingPoint, StabilityError> {
         let settled = self.settle(model, drive)?;
         let system = settled.vibrations(&self.bodies, model, drive);
@@ -88,6 +121,7 @@ impl SparseStructure {
         let mut open: Vec<(f64, f64, usize)> =
             (0..PARTS).rev().map(|at| (part * at as f64, part * (at + 1) as f64, HALVINGS)).collect();
         while let Some((low, high, halvings)) = open.pop() {
+            self.stop.check()?;
             let half = 0.5 * (high - low);
             let Near { found, radius_per_s } =
                 near(&system.matrices, damping_s, c64::new(0.0, low + half), STEPS)?;
@@ -109,7 +143,8 @@ impl SparseStructure {
         let last_per_s = last_per_s.fold(f64::INFINITY, f64::min);
         if reached_per_s >= band_per_s && last_per_s > band_per_s && last_per_s.is_finite() {
             let most = (WORK_BEYOND / system.matrices.size()).min(MOST_BEYOND);
-            reached_per_s = beyond(&system, damping_s, [band_per_s, last_per_s], part, most, &mut all)?;
+            reached_per_s =
+                self.beyond(&system, damping_s, [band_per_s, last_per_s], part, most, &mut all)?;
         }
         // A mode above what was covered is one, too, but others may be missing there.
         all.retain(|found: &Found| {
@@ -277,34 +312,6 @@ impl SparseStructure {
         }
         forces
     }
-}
-
-/// Adds the eigenvalues between two frequencies \[1/s\] from the lower one on, with at most `most` searches, the first of which is to
-/// be `width` wide. Returns the frequency up to which none is missing.
-fn beyond(
-    system: &System,
-    damping_s: f64,
-    [from, to]: [f64; 2],
-    width: f64,
-    most: usize,
-    all: &mut Vec<Found>,
-) -> Result<f64, StabilityError> {
-    let (mut reached, mut width) = (from, width);
-    for _ in 0..most {
-        if reached >= to || width < NARROWEST * reached {
-            break;
-        }
-        let middle = reached + 0.5 * width;
-        let Near { found, radius_per_s } = near(&system.matrices, damping_s, c64::new(0.0, middle), STEPS)?;
-        all.extend(found);
-        let covered = radius_per_s / OVERLAP;
-        if covered >= 0.5 * width {
-            reached = middle + covered;
-        }
-        // A radius of the same size is likely next to it.
-        width = if radius_per_s > 0.0 { (1.8 * covered).min(to) } else { 0.5 * width };
-    }
-    Ok(reached.min(to))
 }
 
 struct Settled {

@@ -43,10 +43,10 @@ const ABOVE: &str = "what is known above band_hz: nothing is there, damped, coar
 /// Which modes of a point are shown.
 #[derive(Clone, Copy, Debug)]
 pub struct ShownModes {
-    /// The largest number of modes.
+    /// The largest number of modes; with a frequency the largest number of those that decay.
     pub count: usize,
-    /// Modes that grow come first, and then the others in the order of their distance from this frequency (Hz); `None` if all are in the
-    /// order of their growth.
+    /// All modes that grow come first, and then the others in the order of their distance from this frequency (Hz); `None` if all are in
+    /// the order of their growth.
     pub near_hz: Option<f64>,
 }
 
@@ -57,15 +57,12 @@ impl ShownModes {
     /// Indices of the modes that are shown, in their order, among those of a point, whose first one grows fastest.
     pub fn of<'a>(self, modes: impl IntoIterator<Item = &'a ComplexMode>) -> Vec<usize> {
         let modes: Vec<&ComplexMode> = modes.into_iter().collect();
-        let mut shown: Vec<usize> = (0..modes.len()).collect();
-        if let Some(near_hz) = self.near_hz {
-            let distance = |index: usize| {
-                let ComplexMode { frequency_hz, growth_rate_per_s, .. } = *modes[index];
-                if growth_rate_per_s >= 0.0 { 0.0 } else { (frequency_hz - near_hz).abs() }
-            };
-            shown.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-        }
-        shown.truncate(self.count);
+        let Some(near_hz) = self.near_hz else { return (0..modes.len().min(self.count)).collect() };
+        let (mut shown, mut others): (Vec<usize>, Vec<usize>) =
+            (0..modes.len()).partition(|&index| modes[index].growth_rate_per_s >= 0.0);
+        let distance = |index: usize| (modes[index].frequency_hz - near_hz).abs();
+        others.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+        shown.extend(others.into_iter().take(self.count));
         shown
     }
 }
