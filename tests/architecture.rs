@@ -42,7 +42,7 @@ const MAY_USE: [(&str, &[&str]); 17] = [
         "cli",
         &[
             "analysis", "exit", "inspect", "publish", "queue", "report", "solver", "spec", "study", "sweep",
-            "worker",
+            "units", "worker",
         ],
     ),
     ("main", &["cli"]),
