@@ -178,9 +178,9 @@ fn jobs_with_too_many_steps() {
         &[endless, "error: bad.json:1:", "density_kg_m3 = 2.5e-9: lighter than cork"],
     );
     let folder = Folder::new();
-    folder.write("slow.json", r#"{ "scene": { "holder": { "mass_kg": 80, "stiffness_y_n_m": 5 } } }"#);
+    folder.write("slow.json", r#"{ "scene": { "holder": { "mass_kg": 8, "stiffness_y_n_m": 0.5 } } }"#);
     let message = stderr(&folder.command("validate slow.json").assert().code(2));
-    let [cause, consequence] = ["stiffness_y_n_m = 5: with a mass of 80 kg", "run.limit_s"]
+    let [cause, consequence] = ["stiffness_y_n_m = 0.5: with a mass of 8 kg", "run.limit_s"]
         .map(|part| message.find(part).expect(part));
     assert!(message.starts_with("error: slow.json:1:") && cause < consequence, "{message}");
     let study = small(&json!({ "beta_r_s": [5e-8, 1, 2], "mu": [0.2, 0.3] }));
