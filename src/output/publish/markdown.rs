@@ -228,7 +228,7 @@ mod tests {
     fn texts_are_no_links() {
         assert_eq!(escape("a [b](https://c.de) [f [Hz]"), "a [b\\](https://c.de) [f [Hz]");
         assert_eq!(escape("[a][b] [b]: c"), "[a\\][b] [b\\]: c");
-        assert_eq!(escape("red \u{1b}[31m \u{202e}"), "red \\u{1b}[31m \\u{202e}");
+        assert_eq!(escape("red \u{1b}[31m \u{202e}"), "red \\\\u{1b}[31m \\\\u{202e}");
         let code = of_blocks(&[Block::Code("```\n~~~~~~\n[a](b)\n````\n\u{1b}[31m".to_owned())]);
         assert_eq!(code, "`````\n```\n~~~~~~\n[a](b)\n````\n\\u{1b}[31m\n`````\n\n");
     }
