@@ -92,8 +92,9 @@ for target in "${targets[@]}"; do
         echo "seconds for clamps, ordinary and static in turn: $(for _ in 1 2 3; do seconds "$ordinary"; seconds "$program"; done | xargs)"
     fi
     bytes=$(stat -c %s "$program")
-    if [ "$bytes" -gt 25000000 ]; then
-        echo "the program for $target has $bytes bytes; at most 25 MB are wanted"
+    # 33 MB on 28 November 2026, of which 25 MB are code. Debug information, or another copy of the solver, would be found.
+    if [ "$bytes" -gt 40000000 ]; then
+        echo "the program for $target has $bytes bytes; at most 40 MB are expected"
         exit 1
     fi
 
