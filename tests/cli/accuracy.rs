@@ -150,10 +150,13 @@ fn an_accuracy_survives_interruptions() {
     let mut stopped = 0;
     for wait_ms in [200, 400, 700, 1000] {
         let run = folder.start("run mine.json --threads 1");
+        // A process that runs jobs handles signals already.
+        folder.wait_for("mine", |counts| counts["running"] > 0 || counts["done"] == 2);
         std::thread::sleep(std::time::Duration::from_millis(wait_ms));
         run.signal("INT");
         let (code, _, messages) = run.end();
-        assert!(matches!(code, Some(0 | 3)), "{messages}");
+        // The process may have finished before the signal.
+        assert!(matches!(code, Some(0 | 3)), "{code:?}: {messages}");
         stopped += usize::from(code == Some(3));
     }
     assert!(stopped > 0, "no run was interrupted");
