@@ -322,7 +322,7 @@ def page(all_rows):
 def main():
     arguments = sys.argv[1:]
     if arguments[:1] == ["--check"] or not arguments:
-        text = evidence.with_part("calibration_proof", page(rows()))[1]
+        text = evidence.with_part("calibration_proof", page(rows()))[PAGE.name]
         if not arguments:
             PAGE.write_text(text)
         elif PAGE.read_text() != text:
@@ -342,7 +342,7 @@ def main():
         known.append(row)
         write(known)
     evidence.stamp("calibration_proof")
-    PAGE.write_text(evidence.with_part("calibration_proof", page(rows()))[1])
+    PAGE.write_text(evidence.with_part("calibration_proof", page(rows()))[PAGE.name])
 
 
 if __name__ == "__main__":

@@ -10,8 +10,10 @@ docs/evidence/stamps.json. Claims take their numbers from the pages, so a new ru
 Needs only Python's standard library; `--turn` builds the program.
 """
 
+import csv
 import datetime
 import difflib
+import io
 import json
 import re
 import subprocess
@@ -39,6 +41,8 @@ PAGES = {
     "calibration_proof": ("", ["calibration_proof"]),
     "speed": ("Speed and forecasts", ["performance", "cost"]),
 }
+# A table with more rows is a file beside its page.
+LONGEST_TABLE = 36
 PAGE_OF = {part: page for page, (_, parts) in PAGES.items() for part in parts}
 
 # The part, what it claims, and the words of the part that have the numbers. White space counts as one blank.
@@ -162,10 +166,29 @@ def page_text(page, own):
     return f"# {title}\n\n" + "\n".join(chapters)
 
 
+def with_tables_as_files(part, text):
+    """A part whose long tables are files beside the page, and these files by their names."""
+    files = {}
+
+    def file_of(found):
+        lines = found[0].rstrip("\n").split("\n")
+        rows = [[re.sub(r"\\(.)|\*\*|`", r"\1", cell).strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]] for line in lines]
+        if len(rows) - 2 <= LONGEST_TABLE:
+            return found[0]
+        name = f"{part}_table{len(files) + 1 if files else ''}.csv"
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows([rows[0], *rows[2:]])
+        files[name] = text.getvalue()
+        return f"The table is a file, [{name}]({name}): {len(rows) - 2} rows with the columns {', '.join(rows[0])}.\n"
+
+    return re.sub(r"(?:^\|.*\n)+", file_of, text, flags=re.M), files
+
+
 def with_part(part, text):
-    """The page in which a part has a new text."""
+    """The files of the page in which a part has a new text, by their names."""
     page = PAGE_OF[part]
-    return page, page_text(page, {**parts(page), part: text})
+    text, files = with_tables_as_files(part, text)
+    return {f"{page}.md": page_text(page, {**parts(page), part: text}), **files}
 
 
 CLAIMS_PAGE = """# Claims and numbers

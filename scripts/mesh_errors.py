@@ -792,12 +792,12 @@ def main():
             runs.evidence.stamp("mesh_errors")
         return
     rows = read()
-    written = {"docs/evidence/mesh_errors.md": runs.evidence.with_part("mesh_errors", page(rows))[1],
+    written = {**{f"docs/evidence/{name}": text for name, text in runs.evidence.with_part("mesh_errors", page(rows)).items()},
                "src/study/presets.json": json.dumps(evidence(jobs_of(rows, [own["name"] for own in SCENES])), indent=2, ensure_ascii=False) + "\n"}
     for name, text in written.items():
         path = runs.ROOT / name
         if given.check:
-            if path.read_text() != text:
+            if not path.exists() or path.read_text() != text:
                 sys.exit(f"{name} is not what scripts/mesh_errors.py writes: run it")
         else:
             path.write_text(text)

@@ -83,8 +83,8 @@ def table(header, rows):
 def write(part, text):
     """Puts a part into its page of docs/evidence, with its claims and what it was made with."""
     evidence.stamp(part)
-    page, text = evidence.with_part(part, text)
-    path = EVIDENCE / f"{page}.md"
-    path.write_text(text)
+    for name, content in evidence.with_part(part, text).items():
+        path = EVIDENCE / name
+        path.write_text(content)
+        print(f"written: {path.relative_to(ROOT)}")
     evidence.write()
-    print(f"written: {path.relative_to(ROOT)}")
