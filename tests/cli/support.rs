@@ -148,12 +148,17 @@ pub fn handles_interrupts(process: &Running) -> bool {
     u64::from_str_radix(caught.trim(), 16).unwrap() & 0b10 != 0
 }
 
-/// Waits until a condition holds.
+/// Waits until a condition holds. A condition that runs a command is looked at less often, so that the command does not take the
+/// time of what is waited for.
 pub fn wait(for_what: &str, mut is_fulfilled: impl FnMut() -> bool) {
     let start = Instant::now();
-    while !is_fulfilled() {
+    loop {
+        let look = Instant::now();
+        if is_fulfilled() {
+            return;
+        }
         assert!(start.elapsed() < TIMEOUT, "waited too long for {for_what}");
-        std::thread::sleep(Duration::from_millis(5));
+        std::thread::sleep((3 * look.elapsed()).max(Duration::from_millis(5)));
     }
 }
 

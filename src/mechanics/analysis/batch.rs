@@ -3,7 +3,7 @@
 use super::checkpoint::Unreadable;
 use super::continuation;
 use super::error::{JobError, check_step};
-use super::lanes::{AnyLanes, Ended, one_lane};
+use super::lanes::{AnyLanes, Ended, moved, one_lane};
 use super::mode::ComplexMode;
 use super::nested::{Beginning, CoarseStart, coarser, cost, is_same_width};
 use super::record::JobRecord;
@@ -224,7 +224,7 @@ impl Batch {
     fn fit(&mut self, jobs: usize) {
         let lanes = jobs.max(1).next_power_of_two().min(8);
         if self.lanes.lanes() != lanes {
-            self.lanes = self.lanes.taken_over(lanes);
+            self.lanes = moved(&mut *self.lanes, lanes);
         }
     }
 

@@ -52,11 +52,14 @@ pub trait AnyLanes: Send {
     /// The first lane without a job, if there is one.
     fn free_lane(&self) -> Option<usize>;
 
-    /// Other lanes of the same model, 1, 2, 4 or 8, which take over the jobs at any point of their runs.
-    ///
-    /// # Panics
-    /// If there are more jobs than lanes.
-    fn taken_over(&mut self, lanes: usize) -> Box<dyn AnyLanes>;
+    /// Other lanes of the same model, 1, 2, 4 or 8, without a job and at the same step.
+    fn empty(&self, lanes: usize) -> Box<dyn AnyLanes>;
+
+    /// Takes the job out of a lane at any point of its run; returns `None` if there is no job.
+    fn leave(&mut self, lane: usize) -> Option<Moving>;
+
+    /// Puts a job into a lane that has none. The job comes from lanes of the same model at the same step.
+    fn join(&mut self, lane: usize, job: Moving);
 
     /// Puts a job into a lane, as [`LanesOf::begin`], from what it begins with.
     ///
@@ -104,6 +107,25 @@ pub fn one_lane(model: Model, precision: Precision) -> Box<dyn AnyLanes> {
         Precision::Double => Box::new(LanesOf::<1, f64>::new(model)),
         Precision::Single => Box::new(LanesOf::<1, f32>::new(model)),
     }
+}
+
+/// A job on its way from one lane to another.
+pub struct Moving {
+    numbers: Vec<f64>,
+    drive: Drive,
+    run: Run,
+}
+
+/// Moves all jobs to other lanes of the same model, 1, 2, 4 or 8, at any point of their runs.
+///
+/// # Panics
+/// If there are more jobs than lanes.
+pub fn moved(from: &mut dyn AnyLanes, lanes: usize) -> Box<dyn AnyLanes> {
+    let mut to = from.empty(lanes);
+    let jobs: Vec<_> = (0..from.lanes()).filter_map(|lane| from.leave(lane)).collect();
+    assert!(jobs.len() <= lanes, "no more jobs than lanes");
+    jobs.into_iter().enumerate().for_each(|(lane, job)| to.join(lane, job));
+    to
 }
 
 /// The job in a lane.
@@ -198,20 +220,11 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
         }
     }
 
-    /// New lanes that take over the jobs of other lanes of the same model.
-    fn with_jobs_of<const M: usize>(from: &mut LanesOf<M, R>) -> Self {
-        let mut lanes = Self::new(Arc::clone(&from.model));
-        lanes.state.step = from.state.step;
-        let mut free = 0..L;
-        for from_lane in 0..M {
-            if let Some(run) = from.runs[from_lane].take() {
-                let lane = free.next().expect("no more jobs than lanes");
-                lanes.load(lane, &mut from.save(from_lane).into_iter());
-                lanes.drives[lane] = from.drives[from_lane];
-                lanes.runs[lane] = Some(run);
-            }
-        }
-        lanes
+    /// Lanes without a job whose next step has this number.
+    fn empty_at(model: &Arc<Model>, step: u64) -> Box<dyn AnyLanes> {
+        let mut lanes = Self::new(Arc::clone(model));
+        lanes.state.step = step;
+        Box::new(lanes)
     }
 
     /// Puts a job into a lane. Its specification has been checked, and its model is that of the lanes.
@@ -314,13 +327,23 @@ impl<const L: usize, R: RunNumber> AnyLanes for LanesOf<L, R> {
     fn jobs(&self) -> usize {
         self.runs.iter().flatten().count()
     }
-    fn taken_over(&mut self, lanes: usize) -> Box<dyn AnyLanes> {
-        match lanes {
-            1 => Box::new(LanesOf::<1, R>::with_jobs_of(self)),
-            2 => Box::new(LanesOf::<2, R>::with_jobs_of(self)),
-            4 => Box::new(LanesOf::<4, R>::with_jobs_of(self)),
-            _ => Box::new(LanesOf::<8, R>::with_jobs_of(self)),
-        }
+    fn empty(&self, lanes: usize) -> Box<dyn AnyLanes> {
+        let new = match lanes {
+            1 => LanesOf::<1, R>::empty_at,
+            2 => LanesOf::<2, R>::empty_at,
+            4 => LanesOf::<4, R>::empty_at,
+            _ => LanesOf::<8, R>::empty_at,
+        };
+        new(&self.model, self.state.step)
+    }
+    fn leave(&mut self, lane: usize) -> Option<Moving> {
+        let run = self.runs[lane].take()?;
+        Some(Moving { numbers: self.save(lane), drive: self.drives[lane], run })
+    }
+    fn join(&mut self, lane: usize, job: Moving) {
+        self.load(lane, &mut job.numbers.into_iter());
+        self.drives[lane] = job.drive;
+        self.runs[lane] = Some(job.run);
     }
 
     fn begin_from(

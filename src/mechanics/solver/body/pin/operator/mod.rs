@@ -214,7 +214,13 @@ impl Operator {
     ) {
         let mut forms = std::mem::take(&mut scratch.forms);
         let mut product = Product { x: u.blocks(), y: force.blocks_mut(), forms: &mut forms };
-        dispatch!(simd => self.pass(simd, &mut product, &mut past, scratch));
+        match (self, &mut scratch.form) {
+            (Self::Hyperelastic { elements, .. }, ScratchOf::Nodes(nodes)) => {
+                dispatch!(simd => elements.pass(simd, &mut product, &mut past, nodes));
+            }
+            // Those of linear elements are K u, which is compiled already.
+            _ => self.multiply(&mut product, scratch),
+        }
         scratch.forms = forms;
     }
 
