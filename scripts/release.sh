@@ -69,7 +69,7 @@ too_large=()
 for target in "${targets[@]}"; do
     machine=${target%%-*}
     rm -rf "$scratch/wheel" "$scratch/unpacked"
-    maturin build --quiet --release --locked --zig --target "$target" --out "$scratch/wheel"
+    maturin build --quiet --profile dist --locked --zig --target "$target" --out "$scratch/wheel"
     wheel unpack --dest "$scratch/unpacked" "$scratch"/wheel/*.whl > /dev/null
     program=$(echo "$scratch"/unpacked/*/*.data/scripts/tribosweep)
     python3 scripts/licences.py "$target" > "$(echo "$scratch"/unpacked/*/*.dist-info/licenses)/THIRDPARTY.txt"

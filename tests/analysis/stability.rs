@@ -23,9 +23,9 @@ fn a_search_for_modes_is_interrupted() {
     let mut spec = short(StabilityMethod::Modes);
     // A tilted pin has sparse factors.
     spec.scene.pin.tilt_x_deg = Some(1.0e-12);
+    (spec.scene.pin.elements, spec.scene.clamp.width_m) = ([3, 4, 3], 0.004);
     let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
     let asked = |structures: &Structures| judge(&spec, &model, &Beginning::REST, structures);
-    assert!(matches!(asked(&Structures::default()), Ok(Verdict::Decided(_))));
     assert!(matches!(asked(&Structures::stopped_when(|| true)), Err(JobError::Interrupted)));
     assert!(matches!(asked(&Structures::stopped_when(|| false)), Ok(Verdict::Decided(_))));
 }

@@ -207,20 +207,20 @@ fn are_like_their_modes(specs: &[JobSpec]) {
 #[test]
 #[ignore = "a second threshold of some ten points"]
 fn thresholds_of_the_inner_side_are_those_of_runs() {
-    thresholds_are_those_of_runs(ClampSide::InnerSide, &DAMPINGS_S[..1]);
+    thresholds_are_those_of_runs([5, 6, 5], ClampSide::InnerSide, &DAMPINGS_S[..1]);
 }
 
 /// Protects: the same with another clamp.
 #[test]
 fn thresholds_of_the_trailing_end_are_those_of_runs() {
-    thresholds_are_those_of_runs(ClampSide::TrailingEnd, &DAMPINGS_S[1..2]);
+    thresholds_are_those_of_runs([4, 5, 4], ClampSide::TrailingEnd, &DAMPINGS_S[1..2]);
 }
 
 /// Protects: the same with a third clamp.
 #[test]
 #[ignore = "a third threshold of some ten points"]
 fn thresholds_of_both_sides_are_those_of_runs() {
-    thresholds_are_those_of_runs(ClampSide::BothSides, &DAMPINGS_S[2..]);
+    thresholds_are_those_of_runs([5, 6, 5], ClampSide::BothSides, &DAMPINGS_S[2..]);
 }
 
 /// Protects: the same with every damping for each clamp.
@@ -228,17 +228,18 @@ fn thresholds_of_both_sides_are_those_of_runs() {
 #[ignore = "nine thresholds, each of some ten points"]
 fn thresholds_at_every_damping_are_those_of_runs() {
     for side in [ClampSide::InnerSide, ClampSide::TrailingEnd, ClampSide::BothSides] {
-        thresholds_are_those_of_runs(side, &DAMPINGS_S);
+        thresholds_are_those_of_runs([5, 6, 5], side, &DAMPINGS_S);
     }
 }
 
 /// β_R of the thresholds.
 const DAMPINGS_S: [f64; 3] = [2.0e-8, 5.0e-8, 2.0e-7];
 
-fn thresholds_are_those_of_runs(side: ClampSide, dampings_s: &[f64]) {
+fn thresholds_are_those_of_runs(elements: [usize; 3], side: ClampSide, dampings_s: &[f64]) {
+    let clamp_width_m = 0.012 / elements[0] as f64;
     for &beta_r_s in dampings_s {
         let at = |mu: f64| {
-            let mut spec = scene([5, 6, 5], 0.0024, mu, 7.0);
+            let mut spec = scene(elements, clamp_width_m, mu, 7.0);
             spec.scene.clamp.side = side;
             spec.numerics.beta_r_s = beta_r_s;
             spec

@@ -310,7 +310,8 @@ mod tests {
         specs[1].scene.pin.young_modulus_pa = 2.1e11;
         specs[1].numerics.beta_r_s = 1.0e-6;
         specs[2].scene.disk.kind = DiskKind::Elastic;
-        specs[2].scene.disk.ring.element_size_m = 0.01;
+        specs[2].scene.disk.ring.element_size_m = 0.012;
+        specs[2].scene.disk.ring.coarse_element_size_m = 0.06;
         for spec in specs {
             let [exact, estimate] = [Workload::examine(&spec), Workload::estimate(&spec)].map(Result::unwrap);
             assert_eq!((exact.pin_nodes, exact.is_estimate), (7 * 9 * 6, false));

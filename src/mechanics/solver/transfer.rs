@@ -180,17 +180,28 @@ mod tests {
     /// start counted as put in.
     #[test]
     fn energies_balance_from_a_start_in_motion() {
+        energies_balance_after(1000, 100);
+    }
+
+    /// Protects: the same later and for longer.
+    #[test]
+    #[ignore = "2400 steps without optimization"]
+    fn energies_balance_for_longer() {
+        energies_balance_after(2000, 400);
+    }
+
+    fn energies_balance_after(steps_before: usize, steps: usize) {
         let (coarse, fine) = (model([6, 8, 5]), model([12, 15, 10]));
         let drive = Drive { law: Law::coulomb(0.5), rate: 2.0, force_n: 30.0, ramp_s: 0.0 };
         let mut before = State::<1>::at_rest(&coarse);
-        for _ in 0..2000 {
+        for _ in 0..steps_before {
             step(&coarse, &[drive], &mut before);
         }
         let motion = before.motion_of(&coarse, 0).interpolated(block(&coarse), block(&fine));
         let mut state = State::<1>::at_rest(&fine);
         state.begin_in_motion(&fine, 0, &motion);
         let mut ledger = EnergyLedger::<1>::new(&fine, 1);
-        for n in 0..400 {
+        for n in 0..steps {
             ledger.before_step(&fine, &state);
             step(&fine, &[drive], &mut state);
             ledger.after_step(&fine, &[drive], &state);

@@ -17,8 +17,8 @@ fn spec(disk: DiskKind) -> JobSpec {
     spec.scene.pin.elements = [6, 8, 5];
     spec.scene.clamp.width_m = 0.002;
     spec.scene.disk.kind = disk;
-    spec.scene.disk.ring.element_size_m = 0.012;
-    spec.scene.disk.ring.coarse_element_size_m = 0.06;
+    spec.scene.disk.ring.element_size_m = 0.02;
+    spec.scene.disk.ring.coarse_element_size_m = 0.1;
     spec
 }
 

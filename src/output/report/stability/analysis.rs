@@ -158,10 +158,12 @@ impl<'a> Analysis<'a> {
                 self.along.with_in_words("changes", "change")
             ));
         }
-        // The other modes, each where it begins to grow for the first time.
+        // The other modes, each where it begins to grow for the first time. A branch that grows at its first point may be one that was
+        // lost before, unless another one grows there, too.
         let first = speed.onsets.first().map(|onset| onset.branch);
+        let others = speed.onsets.iter().filter(|onset| Some(onset.branch) != first);
         let mut more: IndexMap<usize, String> = IndexMap::new();
-        for onset in speed.onsets.iter().filter(|onset| Some(onset.branch) != first) {
+        for onset in others.filter(|onset| onset.below.is_some() || speed.growing_at(onset.mu) > 1) {
             let words =
                 || format!("{} from {}", value::quantity(onset.frequency_hz, "Hz"), value_of(onset.mu));
             more.entry(onset.branch).or_insert_with(words);
@@ -327,6 +329,24 @@ mod tests {
             "{bands}"
         );
         assert_eq!(found.along_in_words(), None);
+    }
+
+    /// Protects: a mode that changes too much to be followed is not counted as one more that grows. If both grow at one point, it is another.
+    #[test]
+    fn a_lost_mode_is_no_further_one() {
+        for (beside, words) in [(-10.0, None), (20.0, Some("1 more mode grows, too: 11 kHz from μ = 0.3"))] {
+            let points = [
+                point(1.0, 0.1, &[(10_000.0, -10.0)]),
+                point(1.0, 0.2, &[(10_000.0, 10.0)]),
+                point(1.0, 0.3, &[(11_000.0, 30.0), (10_000.0, beside)]),
+            ];
+            let along = Along::mu();
+            let rows = rows(&points, &along);
+            let found = Analysis::of(&points, &rows, &along, &View::DEFAULT);
+            let note = found.note(&found.groups[0].speeds[0]);
+            assert_eq!(note.contains("more mode"), words.is_some(), "{note}");
+            assert!(note.contains(words.unwrap_or_default()), "{note}");
+        }
     }
 
     /// Protects: thresholds are those of the parameter that is varied, in a zip with all that move with it, and the table says so.

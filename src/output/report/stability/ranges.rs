@@ -186,6 +186,12 @@ impl Speed {
         self.onsets.first()
     }
 
+    /// The number of modes that grow at the points with this μ.
+    pub fn growing_at(&self, mu: f64) -> usize {
+        let points = self.branches.iter().flat_map(|branch| &branch.points);
+        points.filter(|point| point.mu == mu && point.mode.growth_rate_per_s >= 0.0).count()
+    }
+
     /// The onset of a branch.
     pub fn onset_of(&self, branch: usize) -> Option<&Onset> {
         self.onsets.iter().find(|onset| onset.branch == branch)
