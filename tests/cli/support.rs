@@ -191,7 +191,7 @@ pub fn diverging(mu: &[f64]) -> Value {
 /// together, so that some are left when the first ones are done.
 pub fn long() -> Value {
     let mut study = small(&json!({ "mu": [0.2, 0.3, 0.4, 0.5], "omega_rpm": [2, 3, 5, 7, 10, 20] }));
-    study["run"] = json!({ "limit_s": 0.2, "stop_early": false });
+    study["run"] = json!({ "limit_s": 0.12, "stop_early": false });
     study
 }
 

@@ -86,7 +86,7 @@ async fn an_interrupt_gives_running_jobs_back() {
 /// uninterrupted run. Short jobs, and jobs of a worker without checkpoints, leave no checkpoint.
 #[tokio::test]
 async fn long_jobs_resume_from_checkpoints() {
-    const LIMIT_S: f64 = 1.0;
+    const LIMIT_S: f64 = 0.7;
     let sandbox = Sandbox::new();
     let mut queue = sandbox.open().await;
     let jobs = several(3, LIMIT_S);
