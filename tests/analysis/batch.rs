@@ -265,7 +265,7 @@ fn companions_change_nothing_where_eigenvalues_decide() {
         job.stability = StabilityMethod::Eigenvalues;
     }
     companions_change_nothing_in(&jobs);
-    let records: Vec<_> = jobs.iter().map(|job| record(job)).collect();
+    let records: Vec<_> = jobs.iter().map(record).collect();
     let is_used = |record: &JobRecord| record.start.as_ref().map(CoarseStart::is_used);
     let is_decided = |record: &JobRecord| record.stability.as_ref().is_some_and(|modes| modes.decided);
     assert!(records.iter().any(|record| is_decided(record) && is_used(record) == Some(false)));
@@ -312,7 +312,7 @@ fn companions_and_interruptions_change_nothing_where_an_accuracy_is_asked_in_dou
 
 fn nothing_changes_where_an_accuracy_is_asked(precision: Precision, pauses: &[usize]) {
     let jobs = accurate_jobs(precision);
-    let records: Vec<_> = jobs.iter().map(|job| record(job)).collect();
+    let records: Vec<_> = jobs.iter().map(record).collect();
     for (elements, reached) in [([12, 14, 14], true), ([24, 28, 28], false)] {
         let is_such = |record: &&JobRecord| {
             (record.elements, record.accuracy_reached) == (Some(elements), Some(reached))
