@@ -319,14 +319,19 @@ def page(all_rows):
     return "\n".join(lines) + "\n"
 
 
+def write_page():
+    for name, text in evidence.with_part("calibration_proof", page(rows())).items():
+        (PAGE.parent / name).write_text(text)
+
+
 def main():
     arguments = sys.argv[1:]
     if arguments[:1] == ["--check"] or not arguments:
-        text = evidence.with_part("calibration_proof", page(rows()))[PAGE.name]
         if not arguments:
-            PAGE.write_text(text)
-        elif PAGE.read_text() != text:
-            sys.exit("docs/evidence/calibration_proof.md is not what docs/evidence/calibration.csv says: run scripts/calibration.py")
+            write_page()
+        for name, text in evidence.with_part("calibration_proof", page(rows())).items():
+            if (PAGE.parent / name).read_text() != text:
+                sys.exit(f"docs/evidence/{name} is not what docs/evidence/calibration.csv says: run scripts/calibration.py")
         return
     program, folder = str(Path(arguments[0]).resolve()), Path(arguments[1])
     count = int(arguments[2]) if len(arguments) > 2 else EXPERIMENTS
@@ -342,7 +347,7 @@ def main():
         known.append(row)
         write(known)
     evidence.stamp("calibration_proof")
-    PAGE.write_text(evidence.with_part("calibration_proof", page(rows()))[PAGE.name])
+    write_page()
 
 
 if __name__ == "__main__":

@@ -179,9 +179,10 @@ def with_tables_as_files(part, text):
         text = io.StringIO()
         csv.writer(text, lineterminator="\n").writerows([rows[0], *rows[2:]])
         files[name] = text.getvalue()
-        return f"The table is a file, [{name}]({name}): {len(rows) - 2} rows with the columns {', '.join(rows[0])}.\n"
+        columns = "; ".join(cell.strip() for cell in re.split(r"(?<!\\)\|", lines[0])[1:-1])
+        return f"The table is in [{name}]({name}): {len(rows) - 2} rows with the columns {columns}.\n"
 
-    return re.sub(r"(?:^\|.*\n)+", file_of, text, flags=re.M), files
+    return re.sub(r"(?:^\|.*(?:\n|\Z))+", file_of, text, flags=re.M), files
 
 
 def with_part(part, text):
@@ -228,7 +229,7 @@ def written():
 
 
 # Scripts that take some minutes on two cores, for the turns of the nights. The others take hours or need other programs; their pages say so.
-TURNS = ["agreement", "scenes", "growing", "verdicts", "elastic_disk", "reproduction", "physics", "large_strains", "yielding_pin", "holders"]
+TURNS = ["agreement", "scenes", "growing", "verdicts", "elastic_disk", "reproduction", "physics", "large_strains", "yielding_pin", "holders", "rig"]
 SCRIPT_OF = {"large_strains": "strains", "yielding_pin": "yielding"}
 
 
@@ -263,6 +264,11 @@ def main():
     wrong = [name for name, text in written().items() if (FOLDER / name).read_text() != text]
     if wrong:
         sys.exit(f"docs/evidence: {', '.join(wrong)} are not what scripts/evidence.py writes: run it")
+    for page in PAGES:
+        for name, count in re.findall(r"The table is in \[(\w+\.csv)\]\(\1\): (\d+) rows", (FOLDER / f"{page}.md").read_text()):
+            with open(FOLDER / name, newline="") as table:
+                if len(list(csv.reader(table))) - 1 != int(count):
+                    sys.exit(f"docs/evidence/{name} does not have the {count} rows that {page}.md says")
     old = [f"{part} ({own['solver']})" for part, own in stamps().items() if own["solver"] < solver_version()]
     print(f"older than the solver ({solver_version()}): {', '.join(old)}")
 

@@ -3,7 +3,7 @@
 #
 #     scripts/release.sh [FOLDER [TARGET ...]]
 #
-# Writes into FOLDER (default target/dist), for each target (default x86_64-unknown-linux-musl and aarch64-unknown-linux-musl):
+# Writes into FOLDER (default target/archives), for each target (default x86_64-unknown-linux-musl and aarch64-unknown-linux-musl):
 # * a wheel for Python, with the module, the program, its licences and those of its packages. The program is linked statically, so pip installs
 #   it on every Linux.
 # * an archive with the same program and licences, the book, the completions of shells, manual pages, the studies and the changes,
@@ -13,7 +13,7 @@
 # for the study `clamps`.
 set -euo pipefail
 root="$(cd "$(dirname "$0")/.." && pwd)"
-folder="${1:-$root/target/dist}"
+folder="${1:-$root/target/archives}"
 shift || true
 targets=("$@")
 [ ${#targets[@]} -gt 0 ] || targets=(x86_64-unknown-linux-musl aarch64-unknown-linux-musl)

@@ -40,21 +40,23 @@ impl Queue {
             dropped_done: 0,
             cancelled: 0,
         };
-        // A study that grows keeps its waves if it is submitted as it is.
-        let keeps_waves =
-            replaced.document == document && plan_rows::read(&mut self.connection, study_id).await?.is_some();
+        // A study that grows keeps its waves if it is submitted as it is. Another version of the solver gives its jobs other keys.
+        let known: HashSet<&str> = jobs.iter().map(|(key, ..)| key.as_str()).collect();
+        let keeps_waves = replaced.document == document
+            && keys.is_subset(&known)
+            && plan_rows::read(&mut self.connection, study_id).await?.is_some();
         let mut stay = 0;
-        for (key, state, is_only_here) in jobs {
+        for (key, state, is_only_here) in &jobs {
             let is_wanted = keys.contains(key.as_str());
             stay += u64::from(is_wanted);
             if is_wanted || keeps_waves {
                 replaced.kept += 1;
                 continue;
             }
-            let state = JobState::from_column(&state)?;
+            let state = JobState::from_column(state)?;
             replaced.dropped += 1;
             replaced.dropped_done += u64::from(state == JobState::Done);
-            replaced.cancelled += u64::from(state == JobState::Pending && is_only_here == 1);
+            replaced.cancelled += u64::from(state == JobState::Pending && *is_only_here == 1);
         }
         replaced.new = keys.len() as u64 - stay;
         Ok(Some(replaced))

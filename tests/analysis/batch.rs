@@ -59,7 +59,7 @@ fn nested_jobs(precision: Precision) -> Vec<JobSpec> {
     jobs
 }
 
-/// The record of a job that ran alone. Several tests compare with the same jobs, each of which runs once.
+/// The record of a job that ran alone. Several tests compare with the same jobs, which need not run again.
 fn record(job: &JobSpec) -> JobRecord {
     static KNOWN: Mutex<BTreeMap<String, JobRecord>> = Mutex::new(BTreeMap::new());
     let key = serde_json::to_string(job).unwrap();

@@ -158,7 +158,7 @@ pub fn wait(for_what: &str, mut is_fulfilled: impl FnMut() -> bool) {
             return;
         }
         assert!(start.elapsed() < TIMEOUT, "waited too long for {for_what}");
-        std::thread::sleep((3 * look.elapsed()).max(Duration::from_millis(5)));
+        std::thread::sleep((3 * look.elapsed()).clamp(Duration::from_millis(5), Duration::from_millis(100)));
     }
 }
 
@@ -187,7 +187,7 @@ pub fn diverging(mu: &[f64]) -> Value {
     study
 }
 
-/// Jobs that all take some tenths of a second, so that they can be interrupted. There are more than two threads advance
+/// Jobs that all take a tenth of a second or more, so that they can be interrupted. There are more than two threads advance
 /// together, so that some are left when the first ones are done.
 pub fn long() -> Value {
     let mut study = small(&json!({ "mu": [0.2, 0.3, 0.4, 0.5], "omega_rpm": [2, 3, 5, 7, 10, 20] }));

@@ -348,6 +348,22 @@ fn an_error_without_a_coarser_mesh_is_named() {
     }
 }
 
+/// Protects: elements of an elastic disk that are larger than the pin's base are named, and those of the shipped study are not.
+#[test]
+fn a_disk_with_few_elements_under_the_pin_is_named() {
+    let of_size = |size_m: f64| {
+        let ring = format!(r#""ring": {{ "element_size_m": {size_m}, "coarse_element_size_m": 0.05 }}"#);
+        warnings(&of_scene(&format!(r#""disk": {{ "kind": "elastic", {ring} }}"#)))
+    };
+    let [warning] = of_size(0.013).try_into().unwrap();
+    assert_eq!(warning.kind, "disk_mesh");
+    assert_contains(
+        &warning.to_string(),
+        &["scene.disk.ring.element_size_m = 0.013: ", "larger than the pin's base of 0.012 m"],
+    );
+    assert_eq!(of_size(0.0025), []);
+}
+
 /// Protects: edges that a cylinder does not use are named where the study gives them, and a static coefficient below the kinetic one is.
 #[test]
 fn values_that_contradict_each_other_are_named() {

@@ -571,7 +571,7 @@ fn hostile_scenes_end() {
 
 /// Protects: the same with other laws, and with a load that is nearly none.
 #[test]
-#[ignore = "two more scenes of the same kind"]
+#[ignore = "two more runs of an aluminium pin take seconds"]
 fn more_hostile_scenes_end() {
     scenes_end(&[
         (1.0e4, 1.0e8, FrictionLaw::StaticKinetic, "yielding"),

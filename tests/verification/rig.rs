@@ -81,7 +81,7 @@ fn the_rig_of_allgaier_squeals_with_a_leading_edge() {
 
 /// Protects: without friction nothing grows.
 #[test]
-#[ignore = "modes of a second kind that do not grow"]
+#[ignore = "one more search for modes takes seconds"]
 fn the_rig_of_allgaier_is_quiet_without_friction() {
     nothing_grows(4.0, 0.0);
 }

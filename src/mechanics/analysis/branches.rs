@@ -1,7 +1,7 @@
 //! Modes that are followed over the friction coefficient, or over another parameter in its place.
 //!
 //! The eigenvalues at one μ have no names. A branch joins those that are one mode: at the next μ a mode is looked for where
-//! the line through the last points of the branch leads. Only the leading modes of each μ are known, so that a branch can
+//! the line through the last points of the branch leads, and then where the last point is. Only the leading modes of each μ are known, so that a branch can
 //! begin and end between other ones.
 
 use super::mode::ComplexMode;
@@ -114,23 +114,28 @@ pub fn threads(positions: &[(f64, Vec<Complex<f64>>)]) -> Vec<Vec<(usize, usize)
     let growth_unit = growth_unit(positions);
     let mut found: Vec<Thread> = Vec::new();
     for (index, (at, values)) in positions.iter().enumerate() {
-        let mut pairs = Vec::new();
-        for (number, thread) in found.iter().enumerate() {
-            // All positions between the thread's last point and this one are missed.
-            if index - thread.last().index > MAX_MISSED + 1 {
-                continue;
-            }
-            let expected = thread.expected(*at);
-            let costs = values.iter().map(|value| cost(expected, *value, growth_unit)).enumerate();
-            pairs.extend(costs.filter_map(|(value, cost)| Some((cost?, number, value))));
-        }
-        // The best match of all comes first, so that a mode does not lose its branch to a worse match.
-        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let mut is_taken = vec![false; values.len()];
-        for (_, number, value) in pairs {
-            if !is_taken[value] && found[number].last().index < index {
-                is_taken[value] = true;
-                found[number].0.push(Knot { index, value, at: *at, lambda: values[value] });
+        // Where the line does not lead to a number, it is looked for where it was.
+        let places: [fn(&Thread, f64) -> Complex<f64>; 2] =
+            [Thread::expected, |thread, _| thread.last().lambda];
+        for place in places {
+            let mut pairs = Vec::new();
+            for (number, thread) in found.iter().enumerate() {
+                // All positions between the thread's last point and this one are missed.
+                if index - thread.last().index > MAX_MISSED + 1 {
+                    continue;
+                }
+                let expected = place(thread, *at);
+                let costs = values.iter().map(|value| cost(expected, *value, growth_unit)).enumerate();
+                pairs.extend(costs.filter_map(|(value, cost)| Some((cost?, number, value))));
+            }
+            // The best match of all comes first, so that a mode does not lose its branch to a worse match.
+            pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+            for (_, number, value) in pairs {
+                if !is_taken[value] && found[number].last().index < index {
+                    is_taken[value] = true;
+                    found[number].0.push(Knot { index, value, at: *at, lambda: values[value] });
+                }
             }
         }
         let mut new: Vec<usize> =

@@ -53,12 +53,15 @@ pub trait AnyLanes: Send {
     fn free_lane(&self) -> Option<usize>;
 
     /// Other lanes of the same model, 1, 2, 4 or 8, without a job and at the same step.
-    fn empty(&self, lanes: usize) -> Box<dyn AnyLanes>;
+    fn empty_lanes(&self, lanes: usize) -> Box<dyn AnyLanes>;
 
-    /// Takes the job out of a lane at any point of its run; returns `None` if there is no job.
+    /// Takes the job out of a lane at any point of its run, and brings the lane to rest; returns `None` if there is no job.
     fn leave(&mut self, lane: usize) -> Option<Moving>;
 
-    /// Puts a job into a lane that has none. The job comes from lanes of the same model at the same step.
+    /// Puts a job into a lane. The job comes from lanes of the same model at the same step.
+    ///
+    /// # Panics
+    /// If the lane has a job.
     fn join(&mut self, lane: usize, job: Moving);
 
     /// Puts a job into a lane, as [`LanesOf::begin`], from what it begins with.
@@ -121,7 +124,7 @@ pub struct Moving {
 /// # Panics
 /// If there are more jobs than lanes.
 pub fn moved(from: &mut dyn AnyLanes, lanes: usize) -> Box<dyn AnyLanes> {
-    let mut to = from.empty(lanes);
+    let mut to = from.empty_lanes(lanes);
     let jobs: Vec<_> = (0..from.lanes()).filter_map(|lane| from.leave(lane)).collect();
     assert!(jobs.len() <= lanes, "no more jobs than lanes");
     jobs.into_iter().enumerate().for_each(|(lane, job)| to.join(lane, job));
@@ -327,7 +330,7 @@ impl<const L: usize, R: RunNumber> AnyLanes for LanesOf<L, R> {
     fn jobs(&self) -> usize {
         self.runs.iter().flatten().count()
     }
-    fn empty(&self, lanes: usize) -> Box<dyn AnyLanes> {
+    fn empty_lanes(&self, lanes: usize) -> Box<dyn AnyLanes> {
         let new = match lanes {
             1 => LanesOf::<1, R>::empty_at,
             2 => LanesOf::<2, R>::empty_at,
@@ -338,9 +341,12 @@ impl<const L: usize, R: RunNumber> AnyLanes for LanesOf<L, R> {
     }
     fn leave(&mut self, lane: usize) -> Option<Moving> {
         let run = self.runs[lane].take()?;
-        Some(Moving { numbers: self.save(lane), drive: self.drives[lane], run })
+        let job = Moving { numbers: self.save(lane), drive: self.drives[lane], run };
+        self.clear(lane);
+        Some(job)
     }
     fn join(&mut self, lane: usize, job: Moving) {
+        assert!(self.runs[lane].is_none(), "lane {lane} has a job");
         self.load(lane, &mut job.numbers.into_iter());
         self.drives[lane] = job.drive;
         self.runs[lane] = Some(job.run);

@@ -30,7 +30,7 @@ pub enum About {
 /// Something in a study that is allowed and yet doubtful. Displayed like a [`Problem`].
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Warning {
-    /// What is doubtful, in one word: `unit`, `size`, `friction`, `strain`, `speed`, `locking`, `damping`, `two_dampings`, `mesh_error`, `clamp`, `unused` or `repetition`.
+    /// What is doubtful, in one word: `unit`, `size`, `friction`, `strain`, `speed`, `locking`, `damping`, `two_dampings`, `mesh_error`, `disk_mesh`, `clamp`, `unused` or `repetition`.
     pub kind: &'static str,
     /// Whether it is about the result or the cost.
     pub about: About,

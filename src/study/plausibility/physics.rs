@@ -123,6 +123,7 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     }
     found.extend(two_dampings(spec));
     found.extend(no_coarser_mesh(spec));
+    found.extend(disk_mesh(spec));
     found.extend(clamp(spec));
     found.extend(cylinder(spec));
     found.extend(friction(spec));
@@ -147,6 +148,22 @@ fn no_coarser_mesh(spec: &JobSpec) -> Option<Doubt> {
         size: 1.0,
         message: format!("the mesh error stays unknown: {why}"),
         help: "a finer mesh, or a comparison of two meshes by hand, says how large it is".to_owned(),
+    })
+}
+
+/// Elements of the disk that are larger than the pin's base, under which the disk cannot bend.
+fn disk_mesh(spec: &JobSpec) -> Option<Doubt> {
+    let (disk, [x, y, _]) = (&spec.scene.disk, spec.scene.pin.extent_m());
+    let (element_m, base_m) = (disk.ring.element_size_m, x.min(y));
+    (disk.kind == DiskKind::Elastic && element_m > base_m).then(|| Doubt {
+        kind: "disk_mesh",
+        fields: owned(&["scene.disk.ring.element_size_m"]),
+        size: element_m / base_m,
+        message: format!(
+            "the disk's elements under the pin are larger than the pin's base of {} m, so the disk hardly bends there",
+            short(base_m)
+        ),
+        help: "take elements of a fifth of the base or less, and compare two sizes".to_owned(),
     })
 }
 

@@ -149,6 +149,12 @@ async fn a_study_that_is_submitted_again_keeps_its_waves(sandbox: &Sandbox) {
     let keys = std::collections::HashSet::from(["x"]);
     let preview = queue.preview_replacement("a", &keys, "document of a").await.unwrap().unwrap();
     assert_eq!((preview.kept, preview.new, preview.dropped), (2, 0, 0));
+    // The same study after a change of the solver, which gives its job another key.
+    let other_keys = std::collections::HashSet::from(["x of another version"]);
+    let preview = queue.preview_replacement("a", &other_keys, "document of a").await.unwrap().unwrap();
+    assert_eq!((preview.kept, preview.new, preview.dropped), (0, 1, 2));
+    let other = growing(&["x of another version"]);
+    assert!(queue.submit_shard(&other, Shard::WHOLE, &Replace::KeepingResults).await.is_err());
     let submitted =
         queue.submit_shard(&growing(&["x"]), Shard::WHOLE, &Replace::KeepingResults).await.unwrap();
     assert_eq!((submitted.added, submitted.already_done), (0, 2));

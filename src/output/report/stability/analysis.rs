@@ -158,15 +158,16 @@ impl<'a> Analysis<'a> {
                 self.along.with_in_words("changes", "change")
             ));
         }
-        // The other modes, each where it begins to grow for the first time. A branch that grows at its first point may be one that was
-        // lost before, unless another one grows there, too.
+        // The other modes, each where it begins to grow for the first time.
         let first = speed.onsets.first().map(|onset| onset.branch);
-        let others = speed.onsets.iter().filter(|onset| Some(onset.branch) != first);
+        let perhaps_older = speed.perhaps_older();
         let mut more: IndexMap<usize, String> = IndexMap::new();
-        for onset in others.filter(|onset| onset.below.is_some() || speed.growing_at(onset.mu) > 1) {
+        let mut unsure: IndexMap<usize, String> = IndexMap::new();
+        for onset in speed.onsets.iter().filter(|onset| Some(onset.branch) != first) {
             let words =
                 || format!("{} from {}", value::quantity(onset.frequency_hz, "Hz"), value_of(onset.mu));
-            more.entry(onset.branch).or_insert_with(words);
+            let list = if perhaps_older.contains(&onset.branch) { &mut unsure } else { &mut more };
+            list.entry(onset.branch).or_insert_with(words);
         }
         if !more.is_empty() {
             let verb = if more.len() == 1 { "grows, too" } else { "grow, too" };
@@ -174,6 +175,9 @@ impl<'a> Analysis<'a> {
             let rest = if more.len() > MOST_NAMED { ", …" } else { "" };
             let count = value::count(more.len() as u32, "more mode");
             words.push(format!("{count} {verb}: {}{rest}", named.join(", ")));
+        }
+        if let Some(example) = unsure.values().next() {
+            words.push(format!("a mode could not be followed, perhaps it is that of {example}"));
         }
         words.join("; ")
     }
@@ -331,22 +335,32 @@ mod tests {
         assert_eq!(found.along_in_words(), None);
     }
 
-    /// Protects: a mode that changes too much to be followed is not counted as one more that grows. If both grow at one point, it is another.
+    /// Protects: a mode that changes too much to be followed is not counted as one more that grows, also beside another one. If both grow at
+    /// one point, or if the first one has ceased to grow, it is another.
     #[test]
     fn a_lost_mode_is_no_further_one() {
-        for (beside, words) in [(-10.0, None), (20.0, Some("1 more mode grows, too: 11 kHz from μ = 0.3"))] {
-            let points = [
-                point(1.0, 0.1, &[(10_000.0, -10.0)]),
-                point(1.0, 0.2, &[(10_000.0, 10.0)]),
-                point(1.0, 0.3, &[(11_000.0, 30.0), (10_000.0, beside)]),
-            ];
+        let lost = "a mode could not be followed, perhaps it is that of 11 kHz from μ = 0.3";
+        let note = |points: &[(f64, &[(f64, f64)])]| {
+            let points: Vec<StabilityPoint> =
+                points.iter().map(|(mu, modes)| point(1.0, *mu, modes)).collect();
             let along = Along::mu();
             let rows = rows(&points, &along);
             let found = Analysis::of(&points, &rows, &along, &View::DEFAULT);
-            let note = found.note(&found.groups[0].speeds[0]);
-            assert_eq!(note.contains("more mode"), words.is_some(), "{note}");
-            assert!(note.contains(words.unwrap_or_default()), "{note}");
-        }
+            found.note(&found.groups[0].speeds[0])
+        };
+        let begins = [(0.1, &[(10_000.0, -10.0)][..]), (0.2, &[(10_000.0, 10.0)][..])];
+        let of = |rest: &[(f64, &[(f64, f64)])]| note(&[&begins[..], rest].concat());
+        assert_eq!(of(&[(0.3, &[(11_000.0, 30.0)])]), lost);
+        let both = of(&[(0.3, &[(11_000.0, 30.0), (10_000.0, 20.0)])]);
+        assert_eq!(both, "1 more mode grows, too: 11 kHz from μ = 0.3");
+        let other = of(&[(0.3, &[(10_000.0, -30.0)]), (0.4, &[(11_000.0, 30.0), (10_000.0, -40.0)])]);
+        assert_eq!(other, "1 more mode grows, too: 11 kHz from μ = 0.4");
+        let beside = note(&[
+            (0.1, &[(10_000.0, -10.0), (40_000.0, -10.0)]),
+            (0.2, &[(10_000.0, 10.0), (40_000.0, 10.0)]),
+            (0.3, &[(11_000.0, 30.0), (40_000.0, 30.0)]),
+        ]);
+        assert_eq!(beside, format!("1 more mode grows, too: 40 kHz from μ = 0.15; {lost}"));
     }
 
     /// Protects: thresholds are those of the parameter that is varied, in a zip with all that move with it, and the table says so.

@@ -1,6 +1,6 @@
 //! Where sliding is unstable along a series, and how far that is known.
 
-use crate::analysis::branches::Branch;
+use crate::analysis::branches::{Branch, BranchPoint};
 use crate::analysis::{AboveBand, ComplexMode};
 use crate::publish::value;
 use crate::report::stability_point::StabilityPoint;
@@ -186,10 +186,19 @@ impl Speed {
         self.onsets.first()
     }
 
-    /// The number of modes that grow at the points with this μ.
-    pub fn growing_at(&self, mu: f64) -> usize {
-        let points = self.branches.iter().flat_map(|branch| &branch.points);
-        points.filter(|point| point.mu == mu && point.mode.growth_rate_per_s >= 0.0).count()
+    /// The branches that may be older ones: those that grow at their first point, after another one that still grew at its last.
+    pub fn perhaps_older(&self) -> Vec<usize> {
+        let grows = |point: &&BranchPoint| point.mode.growth_rate_per_s >= 0.0;
+        let lost = self.branches.iter().filter_map(|branch| branch.points.last().filter(grows));
+        let mut lost: Vec<f64> = lost.map(|point| point.mu).collect();
+        let mut found = Vec::new();
+        for onset in self.onsets.iter().filter(|onset| onset.below.is_none()) {
+            if let Some(place) = lost.iter().position(|mu| *mu < onset.mu) {
+                lost.swap_remove(place);
+                found.push(onset.branch);
+            }
+        }
+        found
     }
 
     /// The onset of a branch.

@@ -218,7 +218,7 @@ impl Operator {
             (Self::Hyperelastic { elements, .. }, ScratchOf::Nodes(nodes)) => {
                 dispatch!(simd => elements.pass(simd, &mut product, &mut past, nodes));
             }
-            // Those of linear elements are K u, which is compiled already.
+            // The forces of linear elements are K u, for which there is compiled code already.
             _ => self.multiply(&mut product, scratch),
         }
         scratch.forms = forms;
