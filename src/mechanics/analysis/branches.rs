@@ -237,6 +237,15 @@ mod tests {
         vec![of(Complex::new(MEAN, 0.0) + root), of(Complex::new(MEAN, 0.0) - root)]
     }
 
+    /// Protects: a number that turns back is still the same one, where the line through the last two leads away from it.
+    #[test]
+    fn a_number_that_turns_back_is_followed() {
+        let at = |x: f64, im: f64| (x, vec![Complex::new(0.0, im)]);
+        assert_eq!(threads(&[at(0.0, 100.0), at(1.0, 104.0), at(2.0, 102.0)]).len(), 1);
+        // From 104 to 98 is more than the gate.
+        assert_eq!(threads(&[at(0.0, 100.0), at(1.0, 104.0), at(2.0, 98.0)]).len(), 2);
+    }
+
     fn samples(mus: impl Iterator<Item = f64>, modes: impl Fn(f64) -> Vec<ComplexMode>) -> Vec<Sample> {
         mus.map(|mu| Sample { mu, modes: modes(mu) }).collect()
     }
