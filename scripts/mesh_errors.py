@@ -3,7 +3,7 @@
 
 `run` solves the scenes on several meshes and keeps the results in docs/evidence/mesh_errors.csv. It takes hours, so it is not a part of other
 runs. `run LEVEL ... --scenes NAME ...` adds some of them; the level `draft` has the mesh 1 with the settings of that preset, and the
-level `1%` asks for an accuracy.
+level `1%` asks for an accuracy. `again NUMBER` solves one scene again on two meshes, and ends with 1 if a result is not the one that is kept.
 
 Without arguments it writes docs/evidence/mesh_errors.md and src/study/presets.json from the kept results. `--check` says whether they are up to
 date.
@@ -197,6 +197,26 @@ def run(levels, names):
             new = rows_of(own, level, settled)
             kept = [row for row in kept if (row["scene"], row["level"]) != (own["name"], level)]
             write(kept + new)
+
+
+def again(number):
+    """Solves a scene again on meshes 1 and 2. Ends with 1 if a result is not the one that is kept."""
+    runs.WORK.mkdir(parents=True, exist_ok=True)
+    own, columns = SCENES[number % len(SCENES)], ["status", "regime", "mu_star", "frequency_hz"]
+    differs = 0
+    for level in ("1", "2"):
+        found = {(str(row["mu"]), str(row["omega_rpm"])): row for row in rows_of(own, level, None)}
+        kept = [row for row in read() if (row["scene"], row["level"]) == (own["name"], level)]
+        if len(kept) != len(found):
+            sys.exit(f"{own['name']}, mesh {level}: {len(found)} results, and {len(kept)} are kept")
+        for row in kept:
+            now = found[row["mu"], row["omega_rpm"]]
+            for name in columns:
+                if ("" if now[name] is None else str(now[name])) != row[name]:
+                    print(f"{own['name']}, mesh {level}, mu = {row['mu']}, {row['omega_rpm']} rpm: {name} is {now[name]}, and {row[name]} is kept")
+                    differs = 1
+        print(f"{own['name']}, mesh {level}: {len(kept)} results compared")
+    sys.exit(differs)
 
 
 def run_modes(levels, names):
@@ -784,7 +804,11 @@ def main():
     modes = commands.add_parser("modes", help="compute the modes of scenes and keep them")
     modes.add_argument("levels", nargs="+", choices=["1", "2", "3", "4"], metavar="LEVEL")
     modes.add_argument("--scenes", nargs="+", default=[], metavar="NAME")
+    once_more = commands.add_parser("again", help="solve a scene again and compare with what is kept")
+    once_more.add_argument("number", nargs="?", type=int, default=0, help="of the scene (0)")
     given = arguments.parse_args()
+    if given.command == "again":
+        again(given.number)
     if given.command:
         {"run": run, "modes": run_modes}[given.command](given.levels, given.scenes)
         # The rest of the rows may be older.
