@@ -682,7 +682,7 @@ on several meshes differ by at most {apart:.1e}.
 ## What it covers
 
 {len(jobs)} jobs of {len(SCENES)} scenes ran on meshes with 1, 2, 3 and 4 times the elements of the table [below](#the-scenes) in each direction, with the numerics of `standard`. Each starts from the
-limit cycle on half of its elements where there is one. The limit of fine meshes is extrapolated from the two finest meshes, with order 1.75; ranges are those with orders 1.5 to 2. It is known
+limit cycle on a coarser mesh where there is one: half of its elements, or the next number that has a row of nodes at the clamp's edge. The limit of fine meshes is extrapolated from the two finest meshes, with order 1.75; ranges are those with orders 1.5 to 2. It is known
 for {len(limits)} jobs. {other} have two different limit cycles on their two finest meshes, and the rest slide steadily or do not settle. The limit shares a mesh with the results of meshes 3 and 4,
 so only the lines of mesh 2 are checked by meshes that have no part in them. The tables of bounds have the jobs with a mesh 4 only. The cylinders and the scene `plate` have no mesh 4: the limit of
 {sum("4" not in job for job in limits)} jobs shares mesh 2, and bounds on these pins are not checked.

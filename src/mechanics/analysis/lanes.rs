@@ -56,13 +56,13 @@ pub trait AnyLanes: Send {
     fn empty_lanes(&self, lanes: usize) -> Box<dyn AnyLanes>;
 
     /// Takes the job out of a lane at any point of its run, and brings the lane to rest; returns `None` if there is no job.
-    fn leave(&mut self, lane: usize) -> Option<Moving>;
+    fn leave(&mut self, lane: usize) -> Option<LaneJob>;
 
     /// Puts a job into a lane. The job comes from lanes of the same model at the same step.
     ///
     /// # Panics
     /// If the lane has a job.
-    fn join(&mut self, lane: usize, job: Moving);
+    fn join(&mut self, lane: usize, job: LaneJob);
 
     /// Puts a job into a lane, as [`LanesOf::begin`], from what it begins with.
     ///
@@ -113,7 +113,7 @@ pub fn one_lane(model: Model, precision: Precision) -> Box<dyn AnyLanes> {
 }
 
 /// A job on its way from one lane to another.
-pub struct Moving {
+pub struct LaneJob {
     numbers: Vec<f64>,
     drive: Drive,
     run: Run,
@@ -126,7 +126,7 @@ pub struct Moving {
 pub fn moved(from: &mut dyn AnyLanes, lanes: usize) -> Box<dyn AnyLanes> {
     let mut to = from.empty_lanes(lanes);
     let jobs: Vec<_> = (0..from.lanes()).filter_map(|lane| from.leave(lane)).collect();
-    assert!(jobs.len() <= lanes, "no more jobs than lanes");
+    assert!(jobs.len() <= lanes, "{} jobs do not fit into {lanes} lanes", jobs.len());
     jobs.into_iter().enumerate().for_each(|(lane, job)| to.join(lane, job));
     to
 }
@@ -339,13 +339,13 @@ impl<const L: usize, R: RunNumber> AnyLanes for LanesOf<L, R> {
         };
         new(&self.model, self.state.step)
     }
-    fn leave(&mut self, lane: usize) -> Option<Moving> {
+    fn leave(&mut self, lane: usize) -> Option<LaneJob> {
         let run = self.runs[lane].take()?;
-        let job = Moving { numbers: self.save(lane), drive: self.drives[lane], run };
+        let job = LaneJob { numbers: self.save(lane), drive: self.drives[lane], run };
         self.clear(lane);
         Some(job)
     }
-    fn join(&mut self, lane: usize, job: Moving) {
+    fn join(&mut self, lane: usize, job: LaneJob) {
         assert!(self.runs[lane].is_none(), "lane {lane} has a job");
         self.load(lane, &mut job.numbers.into_iter());
         self.drives[lane] = job.drive;

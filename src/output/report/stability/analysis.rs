@@ -176,8 +176,10 @@ impl<'a> Analysis<'a> {
             let count = value::count(more.len() as u32, "more mode");
             words.push(format!("{count} {verb}: {}{rest}", named.join(", ")));
         }
-        if let Some(example) = unsure.values().next() {
-            words.push(format!("a mode could not be followed, perhaps it is that of {example}"));
+        if !unsure.is_empty() {
+            let named: Vec<&str> = unsure.values().take(MOST_NAMED).map(String::as_str).collect();
+            let lost = value::count(unsure.len() as u32, "mode");
+            words.push(format!("{lost} could not be followed, perhaps to {}", named.join(", ")));
         }
         words.join("; ")
     }
@@ -339,7 +341,7 @@ mod tests {
     /// one point, or if the first one has ceased to grow, it is another.
     #[test]
     fn a_lost_mode_is_no_further_one() {
-        let lost = "a mode could not be followed, perhaps it is that of 11 kHz from μ = 0.3";
+        let lost = "1 mode could not be followed, perhaps to 11 kHz from μ = 0.3";
         let note = |points: &[(f64, &[(f64, f64)])]| {
             let points: Vec<StabilityPoint> =
                 points.iter().map(|(mu, modes)| point(1.0, *mu, modes)).collect();
