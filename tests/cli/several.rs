@@ -133,7 +133,7 @@ fn a_job_that_kills_its_process_fails() {
 fn a_killed_long_job_continues_from_its_checkpoint() {
     let mut study = long();
     study["grid"] = json!({ "mu": [0.2, 0.4] });
-    study["run"]["limit_s"] = json!(2.0);
+    study["run"]["limit_s"] = json!(1.0);
     let undisturbed = Folder::with("study", &study);
     undisturbed.ok("run study.json");
     let folder = Folder::with("study", &study);
@@ -237,7 +237,7 @@ fn wait_until_stopped(run: &Running) {
 #[test]
 fn many_kills_lose_nothing() {
     const WORKERS: usize = 3;
-    const MOST_KILLS: u64 = 150;
+    const MOST_KILLS: u64 = 80;
     let folder = Folder::with("study", &many());
     folder.ok("submit study.json");
     let mut random = Random::new(5);

@@ -10,7 +10,7 @@ use std::time::Instant;
 use tribosweep_mechanics::spec::JobSpec;
 
 /// Number of cases in the ordinary suite.
-const CASES: u64 = 1000;
+const CASES: u64 = 700;
 /// Seed of the cases in the ordinary suite.
 const SEED: u64 = 20_050_605;
 
