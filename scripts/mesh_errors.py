@@ -203,7 +203,7 @@ def again(number):
     """Solves a scene again on meshes 1 and 2. Ends with 1 if a result is not the one that is kept."""
     runs.WORK.mkdir(parents=True, exist_ok=True)
     own, columns = SCENES[number % len(SCENES)], ["status", "regime", "mu_star", "frequency_hz"]
-    differs = 0
+    differ = 0
     for level in ("1", "2"):
         found = {(str(row["mu"]), str(row["omega_rpm"])): row for row in rows_of(own, level, None)}
         kept = [row for row in read() if (row["scene"], row["level"]) == (own["name"], level)]
@@ -211,12 +211,11 @@ def again(number):
             sys.exit(f"{own['name']}, mesh {level}: {len(found)} results, and {len(kept)} are kept")
         for row in kept:
             now = found[row["mu"], row["omega_rpm"]]
-            for name in columns:
-                if ("" if now[name] is None else str(now[name])) != row[name]:
-                    print(f"{own['name']}, mesh {level}, mu = {row['mu']}, {row['omega_rpm']} rpm: {name} is {now[name]}, and {row[name]} is kept")
-                    differs = 1
+            texts = {name: "" if now[name] is None else str(now[name]) for name in columns}
+            where = f"{own['name']}, mesh {level}, mu = {row['mu']}, {row['omega_rpm']} rpm"
+            differ += runs.differences(where, {name: row[name] for name in columns}, texts)
         print(f"{own['name']}, mesh {level}: {len(kept)} results compared")
-    sys.exit(differs)
+    sys.exit(differ > 0)
 
 
 def run_modes(levels, names):

@@ -80,6 +80,14 @@ def table(header, rows):
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines) + "\n"
 
 
+def differences(where, kept, found):
+    """Prints where a result is not the one that is kept. Both are dictionaries of texts by name. Returns how many differ."""
+    differ = [name for name in kept if found[name] != kept[name]]
+    for name in differ:
+        print(f"{where}: {name} is {found[name] or 'unknown'}, and {kept[name] or 'unknown'} is kept")
+    return len(differ)
+
+
 def write(part, text):
     """Puts a part into its page of docs/evidence, with its claims and what it was made with."""
     evidence.stamp(part)

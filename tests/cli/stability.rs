@@ -256,7 +256,8 @@ fn the_folder_is_a_report() {
 }
 
 /// Protects: the shapes of the first modes at every point of the grid are files that ParaView reads, the largest amplitude is 5 %
-/// of the pin's shortest edge, and a grid that is too large is refused before the work.
+/// of the pin's shortest edge, and a grid that is too large is refused before the work. With a frequency the shapes are those of the modes
+/// that are shown.
 #[test]
 fn shapes_are_written_on_request() {
     let folder = Folder::with("study", &small(&json!({ "mu": [0.1, 0.4] })));
@@ -279,6 +280,22 @@ fn shapes_are_written_on_request() {
     let series = listed.filter(|entry| entry.path().extension().is_some_and(|own| own == "pvd"));
     assert_eq!(series.count(), 4);
     assert!(folder.read("reports/study-stability/stability.html").contains("href=\"modes/\""));
+
+    let near = "stability study.json --modes 1 --near 20kHz --shapes --name near --no-thresholds --set omega_rpm=7 --json";
+    let shown = folder.ok(near);
+    let shown: Vec<Value> = shown.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert!(
+        shown.iter().any(|row| row["mode"] != 1),
+        "the nearest modes are the fastest growing ones: {shown:?}"
+    );
+    let mut expected: Vec<String> =
+        shown.iter().map(|row| format!("omega_rpm-7_mu-{}_mode-{}.pvd", row["mu"], row["mode"])).collect();
+    let listed = std::fs::read_dir(folder.path("reports/near-stability/modes")).unwrap().flatten();
+    let names = listed.map(|entry| entry.file_name().into_string().unwrap());
+    let mut found: Vec<String> = names.filter(|name| name.ends_with(".pvd")).collect();
+    expected.sort();
+    found.sort();
+    assert_eq!(found, expected);
 
     let many = r#"stability study.json --shapes --name many --set mu={"from":0.1,"to":0.6,"count":51}"#;
     let refused = folder.command(many).assert().code(2);
