@@ -1,5 +1,6 @@
 //! Progress on standard error: a bar on a terminal, plain lines elsewhere.
 
+use super::outlook::time_left;
 use super::output::{log, wrapped};
 use crate::publish::value::{count, multiple, significant};
 use crate::queue::Planned;
@@ -76,7 +77,7 @@ fn lines(snapshot: &Snapshot, width: usize) -> Vec<String> {
     let counts = &snapshot.counts;
     let (ended, total) = (counts.done + counts.failed, counts.total());
     let failed = if counts.failed > 0 { format!(", {} failed", counts.failed) } else { String::new() };
-    let state = format!("{ended}/{total} jobs{failed}, {} left", snapshot.eta);
+    let state = format!("{ended}/{total} jobs{failed}, {}", time_left(snapshot.eta));
     let room = width.saturating_sub(state.chars().count() + 1);
     let mut lines = if room >= BAR.1 {
         vec![format!("{} {state}", bar(ended, total, room.min(BAR.0)))]
@@ -144,7 +145,7 @@ impl Progress for Display {
                     *last = Instant::now();
                     let running =
                         running(&snapshot.running).map_or_else(String::new, |text| format!("; {text}"));
-                    log(format_args!("{}, {} left{running}", counters(snapshot), snapshot.eta));
+                    log(format_args!("{}, {}{running}", counters(snapshot), time_left(snapshot.eta)));
                 }
             }
         }
@@ -202,7 +203,7 @@ mod tests {
                 cancelled: 0,
             },
             running: limits_ms.iter().enumerate().map(job).collect(),
-            eta: Eta { low: Duration::from_hours(83), high: Duration::from_hours(833) },
+            eta: Some(Eta { low: Duration::from_hours(83), high: Duration::from_hours(833) }),
         }
     }
 

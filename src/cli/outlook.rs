@@ -4,6 +4,7 @@ use super::output::wrapped;
 use crate::publish::value::count;
 use crate::queue::ActiveWorkers;
 use crate::sweep::Outlook;
+use crate::worker::Eta;
 use anstyle::{AnsiColor, Style};
 use serde_json::{Value, json};
 
@@ -38,12 +39,17 @@ fn bar(outlook: &Outlook, length: usize) -> String {
 fn time(outlook: &Outlook) -> String {
     let ActiveWorkers { workers, threads } = outlook.alive;
     let with = |threads: u64| count(threads, "thread");
-    let eta = outlook.eta;
     if workers == 0 {
         let here = with(outlook.threads_here as u64);
+        let eta = outlook.eta.map_or_else(|| "an unknown time".to_owned(), |eta| eta.to_string());
         return format!("no worker is running; it would take {eta} with {here} here");
     }
-    format!("{eta} left with {}", with(threads))
+    format!("{} with {}", time_left(outlook.eta), with(threads))
+}
+
+/// `40 s to 2 min left`.
+pub(crate) fn time_left(eta: Option<Eta>) -> String {
+    eta.map_or_else(|| "unknown time left".to_owned(), |eta| format!("{eta} left"))
 }
 
 /// The outlook for programs.
@@ -61,13 +67,12 @@ pub(crate) fn as_json(outlook: &Outlook) -> Value {
 mod tests {
     use super::*;
     use crate::queue::Counts;
-    use crate::worker::Eta;
     use std::time::Duration;
 
     fn outlook(workers: u64, eta_s: u64) -> Outlook {
         let counts = Counts { done: 30, failed: 3, running: 2, pending: 65, cancelled: 7 };
         let time = Duration::from_secs(eta_s);
-        let eta = Eta { low: time, high: 2 * time };
+        let eta = Some(Eta { low: time, high: 2 * time });
         Outlook { counts, alive: ActiveWorkers { workers, threads: 2 * workers }, threads_here: 4, eta }
     }
 

@@ -3,7 +3,7 @@
 use super::error::SweepError;
 use super::forecast::expected_s_per_cost;
 use crate::queue::{ActiveWorkers, Counts, Queue, Scope};
-use crate::worker::Eta;
+use crate::worker::{Eta, Left};
 use std::num::NonZeroUsize;
 
 /// What is left of a study that is not finished.
@@ -15,8 +15,8 @@ pub struct Outlook {
     pub alive: ActiveWorkers,
     /// Number of threads that this machine can run at once.
     pub threads_here: usize,
-    /// The remaining time with the workers that are running, or on this machine if none is.
-    pub eta: Eta,
+    /// The remaining time with the workers that are running, or on this machine if none is; `None` if it is unknown.
+    pub eta: Option<Eta>,
 }
 
 impl Outlook {
@@ -38,7 +38,7 @@ impl Outlook {
         let expected = expected_s_per_cost(queue).await?;
         // A second thread does not make a single job faster.
         let threads = threads.min(left) as usize;
-        let eta = Eta::estimate(&finished, expected, cost, left, threads);
+        let eta = Eta::estimate(&finished, expected, Left { jobs: left, cost, begun: 0.0 }, threads);
         Ok(Some(Self { counts, alive, threads_here, eta }))
     }
 

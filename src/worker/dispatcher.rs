@@ -5,7 +5,7 @@
 
 use super::channel::{Assignment, JobProgress, Report, Request};
 use super::checkpoint::SealedCheckpoint;
-use super::eta::Eta;
+use super::eta::{Eta, Left};
 use super::executor::Executor;
 use super::heartbeat::Heartbeat;
 use super::idle::IdleTimer;
@@ -426,13 +426,8 @@ impl<'a> Dispatcher<'a> {
         let Tally { counts, remaining_cost, .. } = self.tally;
         let begun: f64 =
             self.running.values().map(|(cost, progress)| cost * (1.0 - progress.share_left())).sum();
-        let eta = Eta::estimate(
-            &self.timings,
-            self.expected_s_per_cost,
-            (remaining_cost - begun).max(0.0),
-            counts.pending + counts.running,
-            self.threads,
-        );
+        let left = Left { jobs: counts.pending + counts.running, cost: remaining_cost, begun };
+        let eta = Eta::estimate(&self.timings, self.expected_s_per_cost, left, self.threads);
         let running = self
             .running
             .iter()

@@ -39,7 +39,7 @@ mod tally;
 mod waves;
 mod work;
 
-pub use eta::Eta;
+pub use eta::{Eta, Left};
 pub use interrupt::Interrupt;
 pub use open::open;
 pub use options::{JobKey, WorkOptions};

@@ -21,8 +21,8 @@ pub struct Snapshot {
     pub counts: Counts,
     /// The jobs that this worker runs.
     pub running: Vec<RunningJob>,
-    /// Remaining time.
-    pub eta: Eta,
+    /// Remaining time; `None` if nothing is known of the jobs that are left.
+    pub eta: Option<Eta>,
 }
 
 /// Receives the progress of a worker, on the thread that runs [`work`](super::work).

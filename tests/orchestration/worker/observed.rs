@@ -35,8 +35,8 @@ async fn progress_only_grows() {
             assert!(snapshot.running.iter().all(|job| job.limit_s.is_none_or(|limit_s| limit_s == 0.002)));
         }
         // The remaining time is estimated from the beginning.
-        assert!(recorder.snapshots[0].eta.high > Duration::ZERO, "{:?}", recorder.snapshots[0]);
-        assert_eq!(recorder.stopped[0].eta.high, Duration::ZERO);
+        assert!(recorder.snapshots[0].eta.unwrap().high > Duration::ZERO, "{:?}", recorder.snapshots[0]);
+        assert_eq!(recorder.stopped[0].eta.unwrap().high, Duration::ZERO);
     }
 }
 
