@@ -269,11 +269,15 @@ def main():
     wrong = [name for name, text in written().items() if (FOLDER / name).read_text() != text]
     if wrong:
         sys.exit(f"docs/evidence: {', '.join(wrong)} are not what scripts/evidence.py writes: run it")
+    left = {path.name for path in FOLDER.glob("*_table*.csv")}
     for page in PAGES:
         for name, count in re.findall(r"The table is in \[(\w+\.csv)\]\(\1\): (\d+) rows", (FOLDER / f"{page}.md").read_text()):
+            left.discard(name)
             with open(FOLDER / name, newline="") as table:
                 if len(list(csv.reader(table))) - 1 != int(count):
                     sys.exit(f"docs/evidence/{name} does not have the {count} rows that {page}.md says")
+    if left:
+        sys.exit(f"docs/evidence: no page names {', '.join(sorted(left))} any more: remove it")
     old = [f"{part} ({own['solver']})" for part, own in stamps().items() if own["solver"] < solver_version()]
     print(f"older than the solver ({solver_version()}): {', '.join(old)}")
 
