@@ -2,7 +2,7 @@
 """Writes docs/evidence/accuracy.md and docs/evidence/work_precision.svg: how accurate the results of the reference scene are.
 
     scripts/accuracy.py                 measure everything, which takes hours
-    scripts/accuracy.py again NUMBER    run a preset again, and end with 1 if a μ* is not the one on the page
+    scripts/accuracy.py again NUMBER    run a preset again, and end with 3 if a μ* is not the one on the page
 
 Converged values of static deflections, and the limits of μ* from which the presets' errors are taken, come from
 scripts/peers/converged.json (scripts/peers/lagrange.py writes it).
@@ -439,18 +439,18 @@ def locking_words():
 
 
 def again(number):
-    """Runs a preset with one mesh again at all speeds. Ends with 1 if a μ* is not the one in the page's table."""
-    runs.WORK.mkdir(parents=True, exist_ok=True)
+    """Runs a preset with one mesh again at all speeds. Ends with `DIFFERS` if a μ* is not the one in the page's table."""
+    database = runs.empty_database("again.db")
     names = [preset["name"] for preset in json.loads(runs.tribosweep("presets", "--json"))["presets"] if not preset["accuracy"]]
     name = names[number % len(names)]
     lines = parts("accuracy")["accuracy"].split("| ω [rpm] | μ\\*, limit |")[1].splitlines()
     column = [cell.strip() for cell in lines[0].split("|")].index(f"μ\\*, `{name}`") + 3
     rows = [[cell.strip() for cell in line.split("|")] for line in lines[2:2 + len(SPEEDS)]]
     kept = {f"{row[1]} rpm": row[column].split()[0] for row in rows}
-    found = cases(runs.sweep(preset_study(name, preset=name), f"preset-{name}.db"))
-    texts = {f"{case['omega_rpm']:g} rpm": f"{case['mu_star']:.4f}" for case in found}
+    found = cases(runs.sweep(preset_study(name, preset=name), database))
+    texts = {f"{case['omega_rpm']:g} rpm": "" if case["mu_star"] is None else f"{case['mu_star']:.4f}" for case in found}
     print(f"`{name}`: {', '.join(f'μ* {text} at {speed}' for speed, text in texts.items())}")
-    sys.exit(runs.differences(f"`{name}`, μ*", kept, texts) > 0)
+    sys.exit(runs.DIFFERS if runs.differences(f"`{name}`, μ*", kept, texts) else 0)
 
 
 def main():

@@ -2,7 +2,7 @@
 """Synthetic experiments for `tribosweep calibrate`: is the truth inside the region that the data leave?
 
     scripts/calibration.py PROGRAM FOLDER [COUNT]   run experiments that docs/evidence/calibration.csv lacks, up to COUNT, and write the page
-    scripts/calibration.py again NUMBER             run an experiment with two free parameters again, and end with 1 if the answer is not the one that is kept
+    scripts/calibration.py again NUMBER             run an experiment with two free parameters again, and end with 3 if the answer is not the kept one
     scripts/calibration.py                          write docs/evidence/calibration_proof.md from docs/evidence/calibration.csv
     scripts/calibration.py --check                  whether the page is what the numbers say
 
@@ -232,7 +232,8 @@ def experiment(program, folder, number, with_least_squares):
 
 
 def again(number):
-    """Runs an experiment with two free parameters again; the others take hours. Ends with 1 if its answer is not the one that is kept."""
+    """Runs an experiment with two free parameters again; the others take hours. Ends with `DIFFERS` if its answer is not the kept one."""
+    runs.build()
     short = [row for row in rows() if len(row["free"].split()) == 2]
     kept = short[number % len(short)]
     with tempfile.TemporaryDirectory() as folder:
@@ -240,7 +241,8 @@ def again(number):
     names = ["free", "inside", "share", "points", "jobs", "implausibility", "best_error"]
     texts = {name: str(found[name]) for name in names}
     print(f"experiment {kept['number']}: {', '.join(f'{name} {texts[name]}' for name in names)}")
-    sys.exit(runs.differences(f"experiment {kept['number']}", {name: kept[name] for name in names}, texts) > 0)
+    differ = runs.differences(f"experiment {kept['number']}", {name: kept[name] for name in names}, texts)
+    sys.exit(runs.DIFFERS if differ else 0)
 
 
 def rows():

@@ -196,7 +196,7 @@ CLAIMS_PAGE = """# Claims and numbers
 
 `scripts/evidence.py` writes this page. Each claim takes its numbers from the page that it names. The last columns say which runs the numbers come from
 ([stamps.json](stamps.json)). The solver is at version {version} now; {old} of {count} parts come from an older one. Versions change for many reasons, most of which move no number of these pages
-([history](../developers/history.md)). Every night one of the parts whose scripts take minutes is computed again, and the numbers of its claims must not have changed ([Nightly](../developers/nightly.md#evidence-in-turn)).
+([history](../developers/history.md)). Every night one of the parts, or some results of a part that takes hours, is computed again, and the numbers must not have changed ([Nightly](../developers/nightly.md#evidence-in-turn)).
 Origins of before 2026-11-28 are the commits in which a number in the tables of the part has changed for the last time.
 
 | claim | page | date | commit | solver |
@@ -228,11 +228,11 @@ def written():
     return {**pages, "claims.md": claims_page(every)}
 
 
-# Scripts that take some minutes on two cores, for the turns of the nights. The others take hours or need other programs; their pages say so.
+# The parts of which one is computed again each night. Their scripts take up to half an hour on two cores.
 TURNS = ["agreement", "scenes", "growing", "verdicts", "elastic_disk", "reproduction", "physics", "large_strains", "yielding_pin", "holders", "rig", "mesh_errors",
          "stability", "eigenvalues", "accuracy", "calibration_proof"]
 SCRIPT_OF = {"large_strains": "strains", "yielding_pin": "yielding", "calibration_proof": "calibration"}
-# These keep the results of hours, of which a turn computes some again (`again NUMBER`) and ends with 1 if one differs.
+# The scripts of these parts take hours. `again NUMBER` computes some of their results again, and ends with 3 if one differs.
 KEPT = ["mesh_errors", "accuracy", "calibration_proof"]
 
 
@@ -243,7 +243,8 @@ def turn(number):
     script = f"scripts/{SCRIPT_OF.get(part, part)}.py"
     print(f"{script}: last run {origin(part, stamps())}", flush=True)
     if part in KEPT:
-        return subprocess.run([sys.executable, str(ROOT / script), "again", str(number // len(TURNS))], cwd=ROOT, check=False).returncode
+        ended = subprocess.run([sys.executable, str(ROOT / script), "again", str(number // len(TURNS))], cwd=ROOT, check=False)
+        return {0: 0, 3: 1}.get(ended.returncode, 2)
     if subprocess.run([sys.executable, str(ROOT / script)], cwd=ROOT, check=False).returncode:
         return 2
     after = parts(page)[part]

@@ -3,7 +3,7 @@
 
 `run` solves the scenes on several meshes and keeps the results in docs/evidence/mesh_errors.csv. It takes hours, so it is not a part of other
 runs. `run LEVEL ... --scenes NAME ...` adds some of them; the level `draft` has the mesh 1 with the settings of that preset, and the
-level `1%` asks for an accuracy. `again NUMBER` solves one scene again on two meshes, and ends with 1 if a result is not the one that is kept.
+level `1%` asks for an accuracy. `again NUMBER` solves one scene again on two meshes, and ends with 3 if a result is not the kept one.
 
 Without arguments it writes docs/evidence/mesh_errors.md and src/study/presets.json from the kept results. `--check` says whether they are up to
 date.
@@ -140,10 +140,10 @@ def multiple(level):
     return 1 if level == "draft" else int(level)
 
 
-def rows_of(own, level, settled):
+def rows_of(own, level, settled, database="meshes.db"):
     """The results of a scene on a level."""
     made = study(own, level, settled)
-    rows = runs.sweep(made, "meshes.db", ("--threads", runs.os.environ.get("T", "2")))
+    rows = runs.sweep(made, database, ("--threads", runs.os.environ.get("T", "2")))
     return [{"scene": own["name"], "level": level, **{name: row[name] for name in COLUMNS[2:]}} for row in rows]
 
 
@@ -200,12 +200,12 @@ def run(levels, names):
 
 
 def again(number):
-    """Solves a scene again on meshes 1 and 2. Ends with 1 if a result is not the one that is kept."""
-    runs.WORK.mkdir(parents=True, exist_ok=True)
+    """Solves a scene again on meshes 1 and 2. Ends with `DIFFERS` if a result is not the kept one."""
+    database = runs.empty_database("again.db")
     own, columns = SCENES[number % len(SCENES)], ["status", "regime", "mu_star", "frequency_hz"]
     differ = 0
     for level in ("1", "2"):
-        found = {(str(row["mu"]), str(row["omega_rpm"])): row for row in rows_of(own, level, None)}
+        found = {(str(row["mu"]), str(row["omega_rpm"])): row for row in rows_of(own, level, None, database)}
         kept = [row for row in read() if (row["scene"], row["level"]) == (own["name"], level)]
         if len(kept) != len(found):
             sys.exit(f"{own['name']}, mesh {level}: {len(found)} results, and {len(kept)} are kept")
@@ -215,7 +215,7 @@ def again(number):
             where = f"{own['name']}, mesh {level}, mu = {row['mu']}, {row['omega_rpm']} rpm"
             differ += runs.differences(where, {name: row[name] for name in columns}, texts)
         print(f"{own['name']}, mesh {level}: {len(kept)} results compared")
-    sys.exit(differ > 0)
+    sys.exit(runs.DIFFERS if differ else 0)
 
 
 def run_modes(levels, names):

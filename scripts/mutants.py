@@ -145,7 +145,7 @@ def reason_alive(test, done):
     if not re.search(r"^running \d+ tests?$", output, re.MULTILINE):
         first = re.search(r"^error.*\n?.*", messages, re.MULTILINE)
         return "error: does not compile: " + " ".join(first[0].split() if first else [])
-    # The programs of a package that do not have the test run none, and say nothing of it.
+    # The other programs of a package run no test. Their output has no result of this one.
     return {"FAILED": "", "ok": "survived: no test fails"}.get(result, "error: its test gave no result")
 
 

@@ -80,11 +80,23 @@ def table(header, rows):
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines) + "\n"
 
 
+# A script that solves kept jobs again ends with this code if a result differs. Python ends with 1 after an error.
+DIFFERS = 3
+
+
+def empty_database(name):
+    """Builds the program and removes a database, so that everything in it is computed anew. Returns its name."""
+    build()
+    for old in WORK.glob(f"{name}*"):
+        old.unlink()
+    return name
+
+
 def differences(where, kept, found):
-    """Prints where a result is not the one that is kept. Both are dictionaries of texts by name. Returns how many differ."""
+    """Prints which results are not the kept ones. Both are dictionaries of texts by name. Returns how many differ."""
     differ = [name for name in kept if found[name] != kept[name]]
     for name in differ:
-        print(f"{where}: {name} is {found[name] or 'unknown'}, and {kept[name] or 'unknown'} is kept")
+        print(f"{where}: {name} is {found[name] or 'unknown'}; the kept value is {kept[name] or 'unknown'}")
     return len(differ)
 
 

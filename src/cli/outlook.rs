@@ -44,12 +44,15 @@ fn time(outlook: &Outlook) -> String {
         let eta = outlook.eta.map_or_else(|| "an unknown time".to_owned(), |eta| eta.to_string());
         return format!("no worker is running; it would take {eta} with {here} here");
     }
-    format!("{} with {}", time_left(outlook.eta), with(threads))
+    match outlook.eta {
+        Some(eta) => format!("{eta} left with {}", with(threads)),
+        None => format!("the time left with {} is unknown", with(threads)),
+    }
 }
 
 /// `40 s to 2 min left`.
 pub(crate) fn time_left(eta: Option<Eta>) -> String {
-    eta.map_or_else(|| "unknown time left".to_owned(), |eta| format!("{eta} left"))
+    eta.map_or_else(|| "the time left is unknown".to_owned(), |eta| format!("{eta} left"))
 }
 
 /// The outlook for programs.

@@ -38,19 +38,27 @@ const STARTS: &str = "
     JOIN jobs AS j ON j.id = m.job_id";
 
 /// The costs of jobs differ by orders of magnitude, so their number is no measure of the time.
-const REMAINING: &str = "SELECT COALESCE(SUM(cost), 0.0) FROM jobs WHERE state IN ('pending', 'running')";
+const REMAINING: &str = "
+    SELECT COALESCE(SUM(cost), 0.0), COUNT(*) FILTER (WHERE cost = 0)
+    FROM jobs WHERE state IN ('pending', 'running')";
 
 const REMAINING_OF_STUDY: Statement = Statement::each(
     "
-    SELECT (SELECT COALESCE(SUM(cost), 0.0) FROM study_pending WHERE study_id = $1)
-         + (SELECT COALESCE(SUM(j.cost), 0.0) FROM jobs AS j INDEXED BY jobs_owner
-            WHERE j.state = 'running' AND j.owner IS NOT NULL
-              AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1))",
+    SELECT p.cost + r.cost, p.without_cost + r.without_cost
+    FROM (SELECT COALESCE(SUM(cost), 0.0) AS cost, COUNT(*) FILTER (WHERE cost = 0) AS without_cost
+          FROM study_pending WHERE study_id = $1) AS p,
+         (SELECT COALESCE(SUM(j.cost), 0.0) AS cost, COUNT(*) FILTER (WHERE j.cost = 0) AS without_cost
+          FROM jobs AS j INDEXED BY jobs_owner
+          WHERE j.state = 'running' AND j.owner IS NOT NULL
+            AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1)) AS r",
     "
-    SELECT (SELECT COALESCE(SUM(cost), 0.0) FROM study_pending WHERE study_id = $1)
-         + (SELECT COALESCE(SUM(j.cost), 0.0) FROM jobs AS j
-            WHERE j.state = 'running'
-              AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1))",
+    SELECT p.cost + r.cost, p.without_cost + r.without_cost
+    FROM (SELECT COALESCE(SUM(cost), 0.0) AS cost, COUNT(*) FILTER (WHERE cost = 0) AS without_cost
+          FROM study_pending WHERE study_id = $1) AS p,
+         (SELECT COALESCE(SUM(j.cost), 0.0) AS cost, COUNT(*) FILTER (WHERE j.cost = 0) AS without_cost
+          FROM jobs AS j
+          WHERE j.state = 'running'
+            AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1)) AS r",
 );
 
 /// Every so many rows only: reading a row costs as much as its record is long.
@@ -73,6 +81,15 @@ const MAX_SAMPLES: i64 = 1_000;
 const COUNT_ROWS: &str = "SELECT COUNT(*) FROM jobs";
 
 const COUNT_ROWS_OF_STUDY: &str = "SELECT COUNT(*) FROM study_jobs WHERE study_id = $1";
+
+/// What the jobs that are pending or running cost.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Remaining {
+    /// The sum of their costs.
+    pub cost: f64,
+    /// The number of jobs whose cost is zero.
+    pub without_cost: u64,
+}
 
 impl Counts {
     /// The number of all jobs.
@@ -121,17 +138,18 @@ impl Queue {
         Ok(starts.unsigned_abs())
     }
 
-    /// The sum of the costs of all jobs of `scope` that are pending or running.
+    /// The costs of all jobs of `scope` that are pending or running.
     ///
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.
-    pub async fn remaining_cost(&mut self, scope: &Scope) -> Result<f64, QueueError> {
+    pub async fn remaining(&mut self, scope: &Scope) -> Result<Remaining, QueueError> {
         let study_id = scope.study_id(&mut self.connection).await?;
         let remaining = match study_id {
             None => query(REMAINING),
             Some(id) => query(REMAINING_OF_STUDY).bind(id),
         };
-        remaining.scalar(&mut self.connection).await
+        let (cost, without_cost): (f64, i64) = remaining.one(&mut self.connection).await?;
+        Ok(Remaining { cost, without_cost: without_cost.unsigned_abs() })
     }
 
     /// The cost and the run time in seconds of the done jobs of `scope`; of many, those of an even sample.

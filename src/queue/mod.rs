@@ -97,7 +97,7 @@ pub use absorb::Absorbed;
 pub use cancel::Cancelled;
 pub use claim::{Claim, ClaimedJob};
 pub use clock::Clock;
-pub use counts::Counts;
+pub use counts::{Counts, Remaining};
 pub use deep::{StoredPayload, StoredResult, StoredState};
 pub use details::JobDetails;
 pub use digest::Integrity;

@@ -33,12 +33,10 @@ impl Outlook {
         let threads_here = available_threads();
         let threads = if alive.threads > 0 { alive.threads } else { threads_here as u64 };
         let scope = Scope::Study(study.to_owned());
-        let cost = queue.remaining_cost(&scope).await?;
+        let left = Left::new(counts, queue.remaining(&scope).await?, 0.0);
         let finished = queue.timings(&scope).await?;
         let expected = expected_s_per_cost(queue).await?;
-        // A second thread does not make a single job faster.
-        let threads = threads.min(left) as usize;
-        let eta = Eta::estimate(&finished, expected, Left { jobs: left, cost, begun: 0.0 }, threads);
+        let eta = Eta::estimate(&finished, expected, left, threads as usize);
         Ok(Some(Self { counts, alive, threads_here, eta }))
     }
 

@@ -263,7 +263,7 @@ fn new_job(
         key: job.key.clone(),
         payload: encode(&job.spec)?,
         parameters: encode(&parameters)?,
-        // How long modes take has nothing to do with the steps of a run.
+        // The time of modes does not depend on the steps of a run.
         cost: if job.spec.has_run() { workload.node_steps(Ending::of(&job.spec).likely_s) } else { 0.0 },
         batch: batch.to_owned(),
         priority: None,

@@ -423,10 +423,10 @@ impl<'a> Dispatcher<'a> {
 
     /// The state of the jobs now.
     pub fn snapshot(&self) -> Snapshot {
-        let Tally { counts, remaining_cost, .. } = self.tally;
+        let Tally { counts, remaining, .. } = self.tally;
         let begun: f64 =
             self.running.values().map(|(cost, progress)| cost * (1.0 - progress.share_left())).sum();
-        let left = Left { jobs: counts.pending + counts.running, cost: remaining_cost, begun };
+        let left = Left::new(counts, remaining, begun);
         let eta = Eta::estimate(&self.timings, self.expected_s_per_cost, left, self.threads);
         let running = self
             .running

@@ -2,7 +2,7 @@
 //! a turn. So the changes by this worker are counted here, and the database is queried now and then for the changes by
 //! other workers.
 
-use crate::queue::{Counts, FinishedOutcome, Queue, QueueError, Scope};
+use crate::queue::{Counts, FinishedOutcome, Queue, QueueError, Remaining, Scope};
 use std::time::{Duration, Instant};
 
 /// Shortest time between two queries.
@@ -19,15 +19,16 @@ const QUERY_SHARE: u32 = 20;
 pub struct Tally {
     /// Jobs in each state.
     pub counts: Counts,
-    /// The cost of pending and running jobs.
-    pub remaining_cost: f64,
+    /// What pending and running jobs cost.
+    pub remaining: Remaining,
     next_query: Instant,
 }
 
 impl Tally {
     /// Queries the database.
     pub async fn new(queue: &mut Queue, scope: &Scope) -> Result<Self, QueueError> {
-        let mut tally = Self { counts: Counts::default(), remaining_cost: 0.0, next_query: Instant::now() };
+        let mut tally =
+            Self { counts: Counts::default(), remaining: Remaining::default(), next_query: Instant::now() };
         tally.query(queue, scope).await?;
         Ok(tally)
     }
@@ -50,7 +51,7 @@ impl Tally {
     pub async fn query(&mut self, queue: &mut Queue, scope: &Scope) -> Result<(), QueueError> {
         let begun = Instant::now();
         self.counts = queue.counts(scope).await?;
-        self.remaining_cost = queue.remaining_cost(scope).await?;
+        self.remaining = queue.remaining(scope).await?;
         let took = begun.elapsed();
         let workers = u32::try_from(queue.active_workers().await?.workers).unwrap_or(u32::MAX).max(1);
         self.next_query = Instant::now()
@@ -82,6 +83,10 @@ impl Tally {
                 return;
             }
         }
-        self.remaining_cost = (self.remaining_cost - cost).max(0.0);
+        if cost == 0.0 {
+            self.remaining.without_cost = self.remaining.without_cost.saturating_sub(1);
+        } else {
+            self.remaining.cost = (self.remaining.cost - cost).max(0.0);
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! What reports and the progress display read.
 
 use tribosweep::queue::{
-    Claim, Integrity, JobState, Queue, QueueError, Rows, Scope, StudyDocument, StudyRow, StudySummary,
+    Claim, Integrity, JobState, Queue, QueueError, Remaining, Rows, Scope, StudyDocument, StudyRow,
+    StudySummary,
 };
 
 use crate::orchestration::support::{Sandbox, claim, counts, done, failed, finish, labelled, of, study};
@@ -119,23 +120,33 @@ async fn jobs_are_found_in_one_study(sandbox: &Sandbox) {
     assert_eq!(queue.parameters("b", "k1").await.unwrap(), None);
 }
 
-/// Protects: the remaining cost is that of the pending and running jobs.
+/// Protects: the remaining cost is that of the pending and running jobs, and those without a cost are counted.
 async fn remaining_cost(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let mut a = study("a", &["p", "q", "r", "s", "t"]);
     for (job, cost) in a.jobs.iter_mut().zip([16.0, 8.0, 4.0, 2.0, 1.0]) {
         job.cost = cost;
     }
+    let is = |cost, without_cost| Remaining { cost, without_cost };
     queue.submit(&a).await.unwrap();
     queue.submit(&study("b", &["p", "u"])).await.unwrap();
-    assert_eq!(queue.remaining_cost(&Scope::All).await.unwrap(), 32.0);
+    assert_eq!(queue.remaining(&Scope::All).await.unwrap(), is(32.0, 0));
     claim(&mut queue, of("a"), 4).await;
     for (key, outcome) in [("q", done("r")), ("p", done("r")), ("r", failed("e"))] {
         assert!(finish(&mut queue, key, 1, outcome).await);
     }
 
-    assert_eq!(queue.remaining_cost(&Scope::All).await.unwrap(), 4.0, "s is running; t and u are pending");
-    assert_eq!(queue.remaining_cost(&of("a")).await.unwrap(), 3.0);
+    assert_eq!(queue.remaining(&Scope::All).await.unwrap(), is(4.0, 0), "s is running; t and u are pending");
+    assert_eq!(queue.remaining(&of("a")).await.unwrap(), is(3.0, 0));
+
+    let mut modes = study("c", &["v", "w", "t"]);
+    for job in &mut modes.jobs[..2] {
+        job.cost = 0.0;
+    }
+    queue.submit(&modes).await.unwrap();
+    claim(&mut queue, of("c"), 2).await;
+    assert_eq!(queue.remaining(&of("c")).await.unwrap(), is(1.0, 2), "v is pending, and w or t, too");
+    assert_eq!(queue.remaining(&Scope::All).await.unwrap(), is(4.0, 2));
 }
 
 /// Protects: for a mistyped study name, every operation returns an error that lists the existing names.
@@ -149,7 +160,7 @@ async fn an_unknown_study_is_an_error_with_the_known_ones(sandbox: &Sandbox) {
     let errors = [
         queue.rows("map").await.unwrap_err(),
         queue.counts(&of("map")).await.unwrap_err(),
-        queue.remaining_cost(&of("map")).await.unwrap_err(),
+        queue.remaining(&of("map")).await.unwrap_err(),
         queue.exchange(&[], &[Claim { scope: of("map"), limit: 0, batch: None }]).await.unwrap_err(),
     ];
     for error in errors {
