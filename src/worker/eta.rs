@@ -165,7 +165,7 @@ mod tests {
     }
 
     /// Protects: of jobs without a cost nothing is said before one of them has finished, whatever others took. Then their times count,
-    /// and those of others do not. Beside jobs with a cost both times add up. A thread more than jobs makes nothing faster.
+    /// and those of others do not. Beside jobs with a cost both times add up. More threads than jobs make nothing faster.
     #[test]
     fn jobs_without_a_cost_are_known_by_each_other() {
         let modes = Left { without_cost: 10, ..left(0, 0.0) };

@@ -145,7 +145,11 @@ async fn remaining_cost(sandbox: &Sandbox) {
     }
     queue.submit(&modes).await.unwrap();
     claim(&mut queue, of("c"), 2).await;
-    assert_eq!(queue.remaining(&of("c")).await.unwrap(), is(1.0, 2), "v is pending, and w or t, too");
+    assert_eq!(
+        queue.remaining(&of("c")).await.unwrap(),
+        is(1.0, 2),
+        "t and a job without a cost are running, the other one is pending"
+    );
     assert_eq!(queue.remaining(&Scope::All).await.unwrap(), is(4.0, 2));
 }
 
