@@ -111,4 +111,15 @@ mod tests {
             "{alone}"
         );
     }
+
+    /// Protects: a time that nobody knows, such as that of modes of which none has finished, is no number.
+    #[test]
+    fn an_unknown_time_is_stated() {
+        let unknown = |workers| Outlook { eta: None, ..outlook(workers, 0) };
+        let running = plain(&unknown(1), 100).join(" ");
+        assert!(running.ends_with("the time left with 2 threads is unknown"), "{running}");
+        let alone = plain(&unknown(0), 100).join(" ");
+        assert!(alone.ends_with("it would take an unknown time with 4 threads here"), "{alone}");
+        assert_eq!(as_json(&unknown(1))["remaining_s"], Value::Null);
+    }
 }

@@ -54,19 +54,6 @@ fn status_counts_jobs() {
     assert_eq!(one["outlook"], json!(null), "no job is left");
 }
 
-/// Protects: nothing is said about the time of modes, of which none has finished.
-#[test]
-fn the_time_of_modes_is_unknown() {
-    let mut study = small(&json!({ "mu": [0.1, 0.4] }));
-    study["stability"] = json!("modes");
-    let folder = Folder::with("modes", &study);
-    folder.ok("submit modes.json");
-    let status: Value = serde_json::from_str(&folder.ok("status modes --json")).unwrap();
-    assert_eq!(status["outlook"]["remaining_s"], json!(null), "{status}");
-    let text = folder.ok("status modes");
-    assert!(text.contains("no worker is running; it would take an unknown time with "), "{text}");
-}
-
 /// Protects: the remaining time is estimated for the workers that are running, and the status says if none is. Text and
 /// JSON agree.
 #[test]
