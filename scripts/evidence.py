@@ -232,8 +232,9 @@ def written():
 TURNS = ["agreement", "scenes", "growing", "verdicts", "elastic_disk", "reproduction", "physics", "large_strains", "yielding_pin", "holders", "rig", "mesh_errors",
          "stability", "eigenvalues", "accuracy", "calibration_proof"]
 SCRIPT_OF = {"large_strains": "strains", "yielding_pin": "yielding", "calibration_proof": "calibration"}
-# The scripts of these parts take hours. `again NUMBER` computes some of their results again, and ends with 3 if one differs.
-KEPT = ["mesh_errors", "accuracy", "calibration_proof"]
+# The scripts of these parts take hours. `again NUMBER` computes some of their results again, and ends with this code if one differs. After an error
+# Python ends with 1.
+KEPT, DIFFERS = ["mesh_errors", "accuracy", "calibration_proof"], 3
 
 
 def turn(number):
@@ -244,7 +245,7 @@ def turn(number):
     print(f"{script}: last run {origin(part, stamps())}", flush=True)
     if part in KEPT:
         ended = subprocess.run([sys.executable, str(ROOT / script), "again", str(number // len(TURNS))], cwd=ROOT, check=False)
-        return {0: 0, 3: 1}.get(ended.returncode, 2)
+        return {0: 0, DIFFERS: 1}.get(ended.returncode, 2)
     if subprocess.run([sys.executable, str(ROOT / script)], cwd=ROOT, check=False).returncode:
         return 2
     after = parts(page)[part]

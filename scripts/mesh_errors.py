@@ -215,7 +215,7 @@ def again(number):
             where = f"{own['name']}, mesh {level}, mu = {row['mu']}, {row['omega_rpm']} rpm"
             differ += runs.differences(where, {name: row[name] for name in columns}, texts)
         print(f"{own['name']}, mesh {level}: {len(kept)} results compared")
-    sys.exit(runs.DIFFERS if differ else 0)
+    sys.exit(runs.evidence.DIFFERS if differ else 0)
 
 
 def run_modes(levels, names):

@@ -80,10 +80,6 @@ def table(header, rows):
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines) + "\n"
 
 
-# A script that solves kept jobs again ends with this code if a result differs. Python ends with 1 after an error.
-DIFFERS = 3
-
-
 def empty_database(name):
     """Builds the program and removes a database, so that everything in it is computed anew. Returns its name."""
     build()

@@ -59,6 +59,7 @@ fn modes_of_a_study_in_one_command() {
     }
     let shown = folder.ok(&format!("show {}", export[0]["job"]));
     assert!(shown.contains("Modes of steady sliding below "), "{shown}");
+    assert!(shown.contains("none, because the job has no run"), "{shown}");
 
     let lines_of_json = folder.ok("stability study.json --modes 2 --json");
     assert_eq!(lines_of_json.lines().count(), 8);

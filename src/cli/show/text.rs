@@ -205,7 +205,11 @@ fn provenance(job: &StoredJob) -> Vec<[String; 2]> {
     add("attempt", details.attempt.to_string());
     add("crashes", details.crashes.to_string());
     add("priority", details.priority.to_string());
-    add("cost", format!("about {} node-steps, for the order of jobs", value::significant(details.cost, 3)));
+    let cost = match details.cost {
+        0.0 => "none, because the job has no run".to_owned(),
+        cost => format!("about {} node-steps, for the order of jobs", value::significant(cost, 3)),
+    };
+    add("cost", cost);
     add("batch", details.batch.clone());
     match details.provenance.as_deref().map(parsed) {
         Some(Value::Object(fields)) => {
