@@ -5,7 +5,7 @@
 runs. `run LEVEL ... --scenes NAME ...` adds some of them; the level `draft` has the mesh 1 with the settings of that preset, and the
 level `1%` asks for an accuracy. `again NUMBER` solves one scene again on two meshes, and ends with 3 if a result is not the kept one.
 
-Without arguments it writes docs/evidence/mesh_errors.md and src/study/presets.json from the kept results. `--check` says whether they are up to
+Without arguments it writes docs/evidence/mesh_errors.md and src/application/study/presets.json from the kept results. `--check` says whether they are up to
 date.
 """
 
@@ -816,7 +816,7 @@ def main():
         return
     rows = read()
     written = {**{f"docs/evidence/{name}": text for name, text in runs.evidence.with_part("mesh_errors", page(rows)).items()},
-               "src/study/presets.json": json.dumps(evidence(jobs_of(rows, [own["name"] for own in SCENES])), indent=2, ensure_ascii=False) + "\n"}
+               "src/application/study/presets.json": json.dumps(evidence(jobs_of(rows, [own["name"] for own in SCENES])), indent=2, ensure_ascii=False) + "\n"}
     for name, text in written.items():
         path = runs.ROOT / name
         if given.check:

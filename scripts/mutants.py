@@ -33,7 +33,7 @@ BUILDS = ROOT / "target/mutants/target"
 UNCHANGED_LIMIT_S, MUTANT_LIMIT_S = 60 * 60, 15 * 60
 KILLED = "killed"
 # The tests inside the sources, as the target of a mutant.
-UNITS = "--package tribosweep-unit-tests"
+UNITS = "--package tribosweep-tests"
 
 
 class Mutant(NamedTuple):
@@ -55,8 +55,8 @@ def has_test(mutant):
         # A test that runs on both databases is a module, in which each database has a function.
         function = modules.pop()
     if mutant.target == UNITS:
-        # The queue is a folder of src as the rooms of the root package are.
-        crates = [ROOT / folder / "lib.rs" for folder in ("src", "src/mechanics", "src/output")]
+        # The queue is a folder of src, and it is one room.
+        crates = [ROOT / folder / "lib.rs" for folder in ("src", "src/application", "src/mechanics", "src/output")]
     else:
         program = ROOT / "tests" / mutant.target[7:]
         crates = [program.with_suffix(".rs"), program / "main.rs"]

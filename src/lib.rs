@@ -75,23 +75,5 @@
 //! * `sweep` – [`sweep`] and [`calibration`], with `queue` and `report`.
 //! * `cli` – [`cli`] and the command, with `sweep`.
 
-#[cfg(feature = "sweep")]
-pub mod calibration;
-#[cfg(feature = "cli")]
-pub mod cli;
-#[cfg(feature = "cli")]
-mod exit;
-pub mod study;
-#[cfg(feature = "sweep")]
-pub mod sweep;
-#[cfg(feature = "queue")]
-pub mod worker;
-
 #[doc(inline)]
-pub use tribosweep_mechanics::{analysis, random, solver, spec, stability, units};
-#[doc(inline)]
-#[cfg(feature = "report")]
-pub use tribosweep_output::{inspect, publish, report};
-#[doc(inline)]
-#[cfg(feature = "queue")]
-pub use tribosweep_queue::queue;
+pub use tribosweep_application::*;

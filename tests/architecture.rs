@@ -56,14 +56,14 @@ fn src() -> PathBuf {
 }
 
 /// Members of the workspace that are made of several rooms.
-const MEMBERS: [&str; 2] = ["mechanics", "output"];
+const MEMBERS: [&str; 3] = ["application", "mechanics", "output"];
 
 /// The source files below src: path relative to src, and text. The heads of members only list their rooms.
 fn sources() -> Vec<(String, String)> {
     let files = walk::below(&src())
         .into_iter()
         .filter(|file| Path::new(file).extension().is_some_and(|extension| extension == "rs"))
-        .filter(|file| !file.ends_with("/lib.rs") && file != "unit_tests/build.rs");
+        .filter(|file| !file.ends_with("/lib.rs") && !file.ends_with("/build.rs"));
     let with_text = files.map(|file| {
         let text = std::fs::read_to_string(src().join(&file)).unwrap();
         (file, text)
@@ -209,14 +209,20 @@ fn modules_use_only_what_they_may() {
 /// queue and the mechanics can be used alone.
 #[test]
 fn members_depend_on_few_others() {
-    for (member, may_use) in [("mechanics", None), ("queue", None), ("output", Some("tribosweep-mechanics"))]
-    {
+    let of_application: &[_] = &["tribosweep-mechanics", "tribosweep-output", "tribosweep-queue"];
+    for (member, may_use) in [
+        ("mechanics", [].as_slice()),
+        ("queue", &[]),
+        ("output", &["tribosweep-mechanics"]),
+        ("application", of_application),
+    ] {
         let manifest = read(&format!("src/{member}/Cargo.toml"));
         let (_, dependencies) = manifest.split_once("[dependencies]\n").unwrap();
         let own = dependencies.lines().take_while(|line| !line.starts_with('['));
-        let own =
-            own.filter(|line| line.starts_with("tribosweep")).map(|line| line.split('.').next().unwrap());
-        assert_eq!(own.collect::<Vec<_>>(), may_use.into_iter().collect::<Vec<_>>(), "{member}");
+        let own = own
+            .filter(|line| line.starts_with("tribosweep"))
+            .map(|line| line.split(['.', ' ']).next().unwrap());
+        assert_eq!(own.collect::<Vec<_>>(), may_use, "{member}");
     }
 }
 
@@ -253,7 +259,7 @@ fn folders(of: &str) -> BTreeSet<String> {
 
 /// The public modules at the root of the crate, each with the feature that it needs; an empty name if it needs none.
 fn public_modules() -> BTreeMap<String, String> {
-    let text = read("src/lib.rs");
+    let text = read("src/application/lib.rs");
     let mut modules = BTreeMap::new();
     let mut feature = "";
     for line in text.lines() {
@@ -346,8 +352,8 @@ fn the_map_is_true() {
     let entries = page.lines().filter_map(|line| line.strip_prefix("* [`")?.split_once("`] – "));
     let entries: BTreeMap<&str, &str> = entries.collect();
     let named: BTreeSet<String> = entries.keys().map(|&name| name.to_owned()).collect();
-    // The Python module is no room of the library: it calls the program. The package of unit tests has no sources.
-    let is_room = |name: &String| !MEMBERS.iter().chain(&["python", "unit_tests"]).any(|other| name == other);
+    // The Python module is no room of the library: it calls the program. The package of tests has no sources.
+    let is_room = |name: &String| !MEMBERS.iter().chain(&["python", "tests"]).any(|other| name == other);
     let of_members = MEMBERS.iter().flat_map(|member| folders(&format!("src/{member}")));
     let rooms: BTreeSet<String> = folders("src").into_iter().filter(is_room).chain(of_members).collect();
     assert_eq!(named, rooms);

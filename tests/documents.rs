@@ -204,8 +204,15 @@ fn modules_in_documents_exist() {
                 found += 1;
             } else if code.contains('/') {
                 for path in expanded(code) {
-                    let places = ["", "src/", "src/mechanics/", "src/mechanics/solver/", "src/output/"]
-                        .map(|folder| format!("{folder}{path}"));
+                    let places = [
+                        "",
+                        "src/",
+                        "src/mechanics/",
+                        "src/mechanics/solver/",
+                        "src/output/",
+                        "src/application/",
+                    ]
+                    .map(|folder| format!("{folder}{path}"));
                     assert!(places.iter().any(|place| exists(place)), "{document} names {path}");
                 }
             }

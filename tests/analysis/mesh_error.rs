@@ -138,11 +138,19 @@ fn modes_have_errors_of_their_own() {
         assert_eq!((same.frequency_mesh_error_hz, same.growth_rate_mesh_error_per_s), (None, None));
         assert_eq!((own.frequency_hz, own.growth_rate_per_s), (same.frequency_hz, same.growth_rate_per_s));
         let Some(error_per_s) = own.growth_rate_mesh_error_per_s else { continue };
+        let error_hz = own.frequency_mesh_error_hz.unwrap();
         known += 1;
+        // What is left of an error, relative to the frequency, without the part of the difference.
+        let share = |error: f64, difference: f64, frequency: f64| {
+            (error - difference.abs() / (ratio - 1.0)) / frequency
+        };
         let is_partner = |other: &ComplexMode| {
-            let difference_per_s = (own.growth_rate_per_s - other.growth_rate_per_s).abs();
-            let share_per_s = error_per_s - difference_per_s / (ratio - 1.0);
-            (share_per_s / (TAU * own.frequency_hz) / GROWTH_SHARE - 1.0).abs() < 1.0e-9
+            let difference_hz = own.frequency_hz - other.frequency_hz;
+            let of_frequency = share(error_hz, difference_hz, own.frequency_hz);
+            let of_growth =
+                share(error_per_s, own.growth_rate_per_s - other.growth_rate_per_s, TAU * own.frequency_hz);
+            [of_frequency, of_growth].iter().all(|rest| (rest / GROWTH_SHARE - 1.0).abs() < 1.0e-9)
+                && difference_hz.abs() <= 0.03 * own.frequency_hz.min(other.frequency_hz)
         };
         assert!(modes(&coarse).iter().any(is_partner), "{own:?}");
     }

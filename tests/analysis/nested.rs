@@ -105,6 +105,13 @@ fn an_accuracy_ends_on_the_first_mesh_that_has_it() {
     let coarsest = run(&asks([6; 3], 0.2));
     assert_eq!((coarsest.elements, coarsest.accuracy_reached), (Some([6; 3]), Some(false)));
     assert_eq!(coarsest.mesh_error(), Err(UnknownError::NoCoarserMesh));
+    // Nor does it say that sliding is stable on finer ones, although μ* of steady sliding hardly depends on the mesh.
+    let mut stable = asks([6; 3], 0.2);
+    stable.scene.contact.mu = 0.1;
+    stable.run.limit_s = 0.009;
+    let stable = run(&stable);
+    assert_eq!((stable.outcome, stable.accuracy_reached), (Outcome::Decayed, Some(false)));
+    assert!(stable.mesh_error().is_ok());
 }
 
 /// Protects: a mesh that does not halve to one with the clamp's row starts from two thirds of its elements, and a job that asks for an

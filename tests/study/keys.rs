@@ -498,7 +498,7 @@ fn a_given_default_does_not_change_the_key() {
 }
 
 /// Protects: keys are stored, and values that they leave out must stay what they are under a version of the solver. Where a default value
-/// changes, its first value is left out of keys still (`left_out` of src/study/key.rs), and the new text belongs here.
+/// changes, its first value is left out of keys still (`left_out` of src/application/study/key.rs), and the new text belongs here.
 #[test]
 fn the_defaults_are_known() {
     let text = concat!(

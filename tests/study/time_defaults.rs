@@ -1,4 +1,4 @@
-//! Protects: times that nobody gives fit the pin. `src/study/time_defaults.rs` has their values.
+//! Protects: times that nobody gives fit the pin. `src/application/study/time_defaults.rs` has their values.
 
 use super::random::Random;
 use super::{assert_contains, parse, refusal};

@@ -5,7 +5,9 @@ use std::hash::{DefaultHasher, Hasher};
 use std::path::Path;
 use std::process::Command;
 
-const SOURCES: [&str; 5] = ["build.rs", "Cargo.toml", "Cargo.lock", "migrations", "src"];
+/// What the program is made of, seen from this package. A package of the registry has nothing but itself.
+const SOURCES: [&str; 4] = ["../../Cargo.toml", "../../Cargo.lock", "../../migrations", "../../src"];
+const OWN: [&str; 1] = ["."];
 
 fn main() {
     // The commit changes when HEAD changes, or the branch that HEAD names. Modifications change the sources below.
@@ -16,13 +18,14 @@ fn main() {
         watch(&["rev-parse", "--git-path", &branch]);
     }
     let mut hasher = DefaultHasher::new();
-    for path in SOURCES {
+    let sources: &[&str] = if SOURCES.iter().all(|path| Path::new(path).exists()) { &SOURCES } else { &OWN };
+    for &path in sources {
         println!("cargo::rerun-if-changed={path}");
         hash(Path::new(path), &mut hasher);
     }
     println!("cargo::rustc-env=TRIBOSWEEP_SOURCES={:016x}", hasher.finish());
     let commit = git(&["rev-parse", "HEAD"]).unwrap_or_else(|| "unknown".to_owned());
-    let changed: Vec<&str> = ["status", "--porcelain", "--"].into_iter().chain(SOURCES).collect();
+    let changed: Vec<&str> = ["status", "--porcelain", "--"].iter().chain(sources).copied().collect();
     let suffix = if git(&changed).is_some_and(|files| !files.is_empty()) { "+modified" } else { "" };
     println!("cargo::rustc-env=TRIBOSWEEP_COMMIT={commit}{suffix}");
     // `1.0.0 (abc1234, 2026-11-22)` with the day of the commit; without a repository the version alone.
