@@ -26,7 +26,7 @@ def stress(*arguments, **settings):
     """Runs tests of `tests/stress`, which append their lines to the summary's folder."""
     environment = dict(os.environ, TRIBOSWEEP_STRESS_SUMMARY=str(SUMMARY))
     environment.update({f"TRIBOSWEEP_STRESS_{name.upper()}": str(value) for name, value in settings.items()})
-    command = ["cargo", "test", "--release", "--quiet", "--test", "mechanics", "--", *arguments]
+    command = ["cargo", "test", "--release", "--quiet", "--test", "references", "--", *arguments]
     # A case that ends in a wrong way makes the test fail and still writes its line, so that the page can say so.
     done = subprocess.run(command, cwd=runs.ROOT, env=environment, stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
@@ -163,7 +163,7 @@ def main():
     total, cases = cases_section(ends)
     repeat = (
         f"TRIBOSWEEP_STRESS_SEED={arguments.seed} TRIBOSWEEP_STRESS_ONLY=4711 \\\n"
-        "    cargo test --release --test mechanics every_case -- --nocapture"
+        "    cargo test --release --test references every_case -- --nocapture"
     )
     runs.write("stability", PAGE.format(
         total=total, seed=arguments.seed, cases=cases, beyond=beyond_section(), long=long_section(), fuzz=fuzz_section(),

@@ -137,11 +137,11 @@ def run_suite():
     shutil.rmtree(EVIDENCE, ignore_errors=True)
     EVIDENCE.mkdir(parents=True)
     done = subprocess.run(
-        ["cargo", "test", "--release", "--test", "mechanics", "--", "--include-ignored", "verification::"],
+        ["cargo", "test", "--release", "--test", "mechanics", "--test", "references", "--", "--include-ignored", "verification::"],
         cwd=runs.ROOT, env=dict(os.environ, TRIBOSWEEP_VERIFICATION=str(EVIDENCE)), stdout=subprocess.PIPE, text=True,
     )
-    results = re.search(r"(\d+) passed; (\d+) failed", done.stdout)
-    passed, failed = (int(count) for count in results.groups())
+    results = re.findall(r"(\d+) passed; (\d+) failed", done.stdout)
+    passed, failed = (sum(int(counts[at]) for counts in results) for at in (0, 1))
     if failed:
         print(done.stdout)
     return passed, failed
@@ -166,8 +166,8 @@ def main():
     runs.write(
         "verification",
         "# Verification against exact answers\n\n"
-        "Written by `scripts/verification.py`; do not edit. It runs `cargo test --release --test mechanics --\n"
-        "--include-ignored verification::`; every case below is asserted there, under one of the criteria that\n"
+        "Written by `scripts/verification.py`; do not edit. It runs `cargo test --release --test mechanics --test\n"
+        "references -- --include-ignored verification::`; every case below is asserted there, under one of the criteria that\n"
         "`tests/verification/evidence.rs` defines: *exact* (only rounding, with a count of operations), *order* (the\n"
         "observed order within 0.25 of that of the analysis, and the extrapolated limit as close to the exact answer as\n"
         "two extrapolations are to each other), *order overall* (slope from the coarsest to the finest), *bounded* (a\n"

@@ -1,7 +1,6 @@
-//! Tests of the mechanics. They are one program, because each of them would compile the solver's generic code again.
+//! Tests of the mechanics, whose time is that of the solver. They are one program, because each of them would compile the same code again.
 
 mod analysis;
 #[path = "support/random.rs"]
 mod random;
-mod stress;
 mod verification;

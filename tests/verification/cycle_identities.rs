@@ -17,9 +17,8 @@
 //! Source: momentum and energy balance of the pin; the identities are derived here from Newton's law and the
 //! definitions of `analysis`.
 
-use crate::verification::common::ROUNDINGS_PER_FORCE;
+use crate::verification::common::{ROUNDINGS_PER_FORCE, stiffness_rows};
 use crate::verification::evidence::Evidence;
-use crate::verification::modes::stiffness_rows;
 use tribosweep_mechanics::analysis::sample::Sampler;
 use tribosweep_mechanics::analysis::sums::Sums;
 use tribosweep_mechanics::solver::energy::{Energies, EnergyLedger};

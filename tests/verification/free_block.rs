@@ -26,9 +26,9 @@
 //! remainder is small and has no single order, so the case there is the overall order from the coarsest mesh
 //! on.
 
-use crate::verification::common::{all_of, definition, pin_material};
+use crate::verification::common::{all_of, definition, pin_material, stiffness_rows};
 use crate::verification::evidence::Evidence;
-use crate::verification::modes::{CLASSES, MirrorClass, Mode, lowest_modes, stiffness_rows};
+use crate::verification::modes::{CLASSES, MirrorClass, Mode, lowest_modes};
 use crate::verification::ritz;
 use tribosweep_mechanics::solver::Model;
 use tribosweep_mechanics::solver::body::pin::BlockMesh;

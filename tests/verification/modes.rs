@@ -30,46 +30,6 @@ pub fn mirror_sign(class: MirrorClass, axis: usize, c: usize) -> f64 {
     if c == axis { -class[axis] } else { class[axis] }
 }
 
-/// Rows of K as the program applies it: 3·node + component → (column, value [N/m]).
-///
-/// A row reaches only the neighbouring nodes in every direction, so nodes three apart can share a product. 81
-/// products with unit displacements give all columns.
-pub fn stiffness_rows(model: &Model) -> Vec<Vec<(usize, f64)>> {
-    let mesh = model.mesh().block().unwrap();
-    let dofs = 3 * mesh.node_count();
-    let mut unit = vec![0.0; dofs];
-    let mut rows = vec![Vec::with_capacity(81); dofs];
-    let counts = mesh.nodes_per_axis();
-    for colour in 0..27 {
-        let offset = [colour % 3, colour / 3 % 3, colour / 9];
-        let coloured = |node: &usize| {
-            let grid = mesh.grid_position(*node);
-            (0..3).all(|a| grid[a] % 3 == offset[a])
-        };
-        for c in 0..3 {
-            unit.fill(0.0);
-            (0..mesh.node_count()).filter(coloured).for_each(|node| unit[3 * node + c] = 1.0);
-            let force = model.pin().stiffness_times(&unit);
-            for node in 0..mesh.node_count() {
-                let grid = mesh.grid_position(node);
-                // The one node of this colour within reach, if the block has it.
-                let near: Option<Vec<usize>> = (0..3)
-                    .map(|a| {
-                        let reach = grid[a].saturating_sub(1)..(grid[a] + 2).min(counts[a]);
-                        reach.into_iter().find(|i| i % 3 == offset[a])
-                    })
-                    .collect();
-                let Some(near) = near else { continue };
-                let column = 3 * mesh.node(near[0], near[1], near[2]) + c;
-                for row in 3 * node..3 * node + 3 {
-                    rows[row].push((column, force[row]));
-                }
-            }
-        }
-    }
-    rows
-}
-
 /// A mode: frequency, and shape over all degrees of freedom (φᵀMφ = 1).
 pub struct Mode {
     pub frequency_hz: f64,

@@ -14,9 +14,10 @@
 //! step, so a force is off by 2n of it after n steps. Displacements along the plane are free to drift, by
 //! n²/2 Δt²/m times the error.
 
-use crate::verification::common::{ROUNDINGS_PER_FORCE, advance, all_of, definition, pin_material};
+use crate::verification::common::{
+    ROUNDINGS_PER_FORCE, advance, all_of, definition, pin_material, stiffness_rows,
+};
 use crate::verification::evidence::Evidence;
-use crate::verification::modes::stiffness_rows;
 use tribosweep_mechanics::solver::body::pin::BlockMesh;
 use tribosweep_mechanics::solver::field::Field;
 use tribosweep_mechanics::solver::interface::law::Law;
