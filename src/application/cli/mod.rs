@@ -60,6 +60,7 @@ const DEFAULT_DB: &str = "tribosweep.db";
 /// A study file describes a scene and a grid of parameters. `run` plans the jobs, solves them and writes a report.
 #[derive(Debug, Parser)]
 #[command(
+    name = "tribosweep",
     version = env!("TRIBOSWEEP_VERSION"),
     max_term_width = 100,
     after_help = exit::help()
