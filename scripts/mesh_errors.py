@@ -86,7 +86,9 @@ def drawn_scenes(kind, seed, count):
 # Scenes drawn at random. The share in the bounds was raised after the first draw and again after five scenes of the second one, so that
 # only the rest and the third draw took no part in the choice.
 FIRST_DRAW, SECOND_DRAW, THIRD_DRAW = drawn_scenes("drawn", 41, 11), drawn_scenes("second", 2, 8), drawn_scenes("third", 3, 12)
-SECOND_CHOSEN, PROOF = SECOND_DRAW[:5], SECOND_DRAW[5:] + THIRD_DRAW
+SECOND_CHOSEN = SECOND_DRAW[:5]
+# The first scene of the third draw has the same μ twice, which is no grid.
+PROOF = SECOND_DRAW[5:] + [own for own in THIRD_DRAW if own["mu"][0] != own["mu"][1]]
 DRAWN = FIRST_DRAW + SECOND_CHOSEN
 # The shares of before.
 EARLIER_SHARES = [0.023, 0.03]

@@ -12,7 +12,8 @@ use tribosweep_output::publish::chart::palette::DARK;
 use tribosweep_output::publish::chart::{At, Axis, Chart, Layer, Panel, Pen, Point, Sample, Shape};
 use tribosweep_output::report::figure::{Plot, StabilityPlot, figures, figures_with, stability_figures};
 use tribosweep_output::report::{
-    Along, JobRow, Report, RowState, StabilityPoint, View, thresholds_table, write, write_stability,
+    Along, JobRow, Report, RowState, StabilityPoint, View, thresholds_table, unknown_errors, write,
+    write_stability,
 };
 
 const SPEEDS: [f64; 4] = [1.0, 5.0, 20.0, 100.0];
@@ -53,6 +54,27 @@ fn a_threshold_has_the_error_of_its_growth_rates() {
     };
     assert_eq!(with_error([Some(20.0), Some(10.0)]), "0.22 ± 0.02");
     assert_eq!(with_error([Some(20.0), None]), "0.22");
+}
+
+/// Protects: who reads modes without an error learns why. The reason is another one if no mode has any.
+#[test]
+fn modes_without_an_error_have_a_reason() {
+    let mut points = [point(1.0, 0.1), point(1.0, 0.2)];
+    let alone = unknown_errors(&points).unwrap();
+    assert!(
+        alone.starts_with("Of 4 modes, 4 have no known mesh error: they are known on one mesh alone"),
+        "{alone}"
+    );
+    points[0].stability.modes[0].growth_rate_mesh_error_per_s = Some(10.0);
+    let others = unknown_errors(&points).unwrap();
+    assert!(
+        others.starts_with("Of 4 modes, 3 have no known mesh error: no mode on the coarser mesh"),
+        "{others}"
+    );
+    for mode in points.iter_mut().flat_map(|point| &mut point.stability.modes) {
+        mode.growth_rate_mesh_error_per_s = Some(10.0);
+    }
+    assert_eq!((unknown_errors(&points), unknown_errors(&[])), (None, None));
 }
 
 fn with_points<'a>(rows: &'a [JobRow], points: &'a [StabilityPoint]) -> Report<'a> {

@@ -15,7 +15,7 @@ use crate::publish::table::Format;
 use crate::publish::value::significant;
 use crate::queue::{Location, Shard};
 use crate::report::{
-    Along, SHAPES, STABILITY_PAGE, ShownModes, StabilityPoint, modes_table, thresholds_table,
+    Along, SHAPES, STABILITY_PAGE, ShownModes, StabilityPoint, modes_table, thresholds_table, unknown_errors,
 };
 use crate::study::number_in;
 use crate::sweep::Plan;
@@ -98,6 +98,9 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             stream(|out| Ok(table.write(Format::JsonLines, out)?))?;
         } else {
             print(&table.rounded(DIGITS).text())?;
+            if let Some(note) = unknown_errors(&points) {
+                print(&format!("{note}\n"))?;
+            }
             if wanted.is_some() && !points.is_empty() {
                 let (table, notes) = thresholds_table(&points, &shown);
                 print(&format!("\nThresholds\n{}", table.rounded(DIGITS).text()))?;

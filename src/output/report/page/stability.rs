@@ -4,7 +4,7 @@ use crate::publish::page::{Block, Figure, Grid, MOST_DATA, Section, limited};
 use crate::publish::value;
 use crate::report::figure::stability::StabilityPlot;
 use crate::report::layout::{Group, MAX_GROUPS, MAX_SHEETS};
-use crate::report::stability::{Analysis, Files, GroupModes, Speed};
+use crate::report::stability::{Analysis, Files, GroupModes, Speed, unknown_errors};
 
 /// What the section is about.
 const MEANING: [&str; 3] = [
@@ -65,7 +65,12 @@ pub(super) fn found(analysis: &Analysis) -> Option<String> {
 /// The section of a page.
 pub(super) fn section(analysis: &Analysis, files: &Files) -> Section {
     let mut blocks: Vec<Block> = Vec::new();
-    let further = [analysis.along_in_words(), analysis.above_band(), not_converged(analysis)];
+    let further = [
+        analysis.along_in_words(),
+        analysis.above_band(),
+        not_converged(analysis),
+        unknown_errors(analysis.points()),
+    ];
     for (plot, figures) in &files.figures {
         for (number, figure) in figures.iter().take(MAX_SHEETS).enumerate() {
             if !figure.caption.is_empty() {

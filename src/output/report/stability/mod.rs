@@ -20,7 +20,7 @@ pub(super) use analysis::{Analysis, GroupModes, rows};
 pub(super) use contour::{Node, zero_line};
 pub(super) use ranges::{Onset, Speed};
 pub(super) use table::described;
-pub use table::{ShownModes, modes_table, thresholds_table};
+pub use table::{ShownModes, modes_table, thresholds_table, unknown_errors};
 pub(super) use verdict::{Verdict, Verdicts};
 pub(super) use write::{Files, write_files};
 pub use write::{PAGE, SHAPES, write_stability};

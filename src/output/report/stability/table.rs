@@ -5,6 +5,7 @@ use super::analysis::{Analysis, MOVES, rows};
 use super::ranges::{Known, Onset, Speed};
 use crate::analysis::ComplexMode;
 use crate::publish::table::{Column, FileColumns, Head, Table};
+use crate::publish::value;
 use crate::report::layout::Group;
 use crate::report::parameters::{self, MU, parameter_names};
 use crate::report::stability_point::StabilityPoint;
@@ -82,6 +83,22 @@ pub fn modes_table<'a>(points: impl IntoIterator<Item = &'a StabilityPoint>, sho
         shown.of(modes).into_iter().map(of_number)
     };
     Table::of("modes", &columns, &points.into_iter().flat_map(of_point).collect::<Vec<_>>())
+}
+
+/// Why modes have no mesh error, in words; `None` if all of them have one, or there are none.
+pub fn unknown_errors(points: &[StabilityPoint]) -> Option<String> {
+    let modes = || points.iter().flat_map(|point| &point.stability.modes);
+    let unknown = modes().filter(|mode| mode.growth_rate_mesh_error_per_s.is_none()).count();
+    let all = modes().count();
+    let reason = match unknown {
+        0 => return None,
+        of_all if of_all == all => {
+            "they are known on one mesh alone, because the study starts from rest, or because the pin has no coarser mesh to compare with (few \
+             elements, a mesh from a file, a clamp without a row of nodes there, or an elastic disk)"
+        }
+        _ => "no mode on the coarser mesh is clearly the same, or there is no such mesh",
+    };
+    Some(format!("Of {}, {unknown} have no known mesh error: {reason}.", value::count(all, "mode")))
 }
 
 /// A series of points along the parameter of the thresholds, with the other parameters, and a range in which a mode grows.
