@@ -120,7 +120,8 @@ fn what_cannot_be_compared_is_unknown() {
 #[test]
 fn modes_have_errors_of_their_own() {
     let mut spec = JobSpec { stability: StabilityMethod::Modes, ..JobSpec::default() };
-    spec.scene.contact.mu = 0.3;
+    // Four modes have their nearest one on the other mesh at 2.8 to 3.5 %, and 3 % is the limit.
+    spec.scene.contact.mu = 0.5;
     spec.scene.clamp.width_m = 0.002;
     spec.run.start = Start::Compared;
     let of = |spec: &JobSpec| solve(spec, &mut Unobserved).unwrap();
