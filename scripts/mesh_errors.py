@@ -87,8 +87,9 @@ def drawn_scenes(kind, seed, count):
 # only the rest and the third draw took no part in the choice.
 FIRST_DRAW, SECOND_DRAW, THIRD_DRAW = drawn_scenes("drawn", 41, 11), drawn_scenes("second", 2, 8), drawn_scenes("third", 3, 12)
 SECOND_CHOSEN = SECOND_DRAW[:5]
-# The first scene of the third draw has the same μ twice, which is no grid.
-PROOF = SECOND_DRAW[5:] + [own for own in THIRD_DRAW if own["mu"][0] != own["mu"][1]]
+# A scene of the third draw may have the same μ twice, which no study can have.
+THIRD_STUDIES = [own for own in THIRD_DRAW if own["mu"][0] != own["mu"][1]]
+PROOF = SECOND_DRAW[5:] + THIRD_STUDIES
 DRAWN = FIRST_DRAW + SECOND_CHOSEN
 # The shares of before.
 EARLIER_SHARES = [0.023, 0.03]
@@ -488,6 +489,12 @@ def proof(jobs):
             "reasons": "; ".join(f"{why} ({reasons.count(why)})" for why in sorted(set(reasons)))}
 
 
+def ran_of(rows, scenes):
+    """The scenes that have results on all levels; of mesh 4 there are only those that 1 % needs."""
+    done = {(row["scene"], row["level"]) for row in rows}
+    return [own for own in scenes if all((own["name"], level) in done for level in ("1%", "2", "3"))]
+
+
 def versions(rows, scenes):
     """How many scenes ran with which version of the solver, in words."""
     by_scene = {row["scene"]: row["solver_version"] for row in rows}
@@ -643,7 +650,7 @@ def evidence(jobs):
     return {"written_by": "scripts/mesh_errors.py", "scenes": len({job["2"]["scene"] for job in jobs if limit(job) is not None}), "presets": presets}
 
 
-def scene_table():
+def scene_table(rows):
     def line(own):
         pin = {"size_m": [0.012, 0.015, 0.010], "young_modulus_pa": 1.0e9, "density_kg_m3": 2500, "poisson_ratio": 0.3, **own["pin"]}
         clamp = f"{own['clamp']['side']}, {1e3 * own['clamp']['width_m']:.3g} mm"
@@ -655,13 +662,14 @@ def scene_table():
         counts = " × ".join(map(str, own["counts"])) if own["counts"] else "that of `draft`"
         return [own["name"], f"{shape}{size}", f"{pin['young_modulus_pa'] / 1e9:g}, {pin['density_kg_m3']:g}, {pin['poisson_ratio']:g}", clamp,
                 f"{own['load']:g}", more, " and ".join(f"{mu:g}" for mu in own["mu"]), counts, ", ".join(rest)]
-    return runs.table(["scene", "pin", "E [GPa], ρ, ν", "clamp", "F [N]", "law", "μ", "mesh 1", "more"], [line(own) for own in SCENES + DRAWN + PROOF])
+    return runs.table(["scene", "pin", "E [GPa], ρ, ν", "clamp", "F [N]", "law", "μ", "mesh 1", "more"], [line(own) for own in SCENES + DRAWN + ran_of(rows, PROOF)])
 
 
 def page(rows):
     chosen, others = ([row for row in read(MODES) if (row["scene"] in MODES_CHOSEN) == is_chosen] for is_chosen in (True, False))
     jobs = jobs_of(rows, [own["name"] for own in SCENES])
-    drawn, unseen = (proof(jobs_of(rows, [own["name"] for own in scenes])) for scenes in (DRAWN, PROOF))
+    ran = ran_of(rows, PROOF)
+    drawn, unseen = (proof(jobs_of(rows, [own["name"] for own in scenes])) for scenes in (DRAWN, ran))
     earlier = [covered_with(jobs_of(rows, [own["name"] for own in scenes]), share)
                for scenes, share in zip((FIRST_DRAW, SECOND_CHOSEN), EARLIER_SHARES)]
     limits = [job for job in jobs if limit(job) is not None]
@@ -753,7 +761,8 @@ to {SHARE["mu_star"]:g}. For these {len(DRAWN)} scenes together:
 {drawn_words(drawn)}
 ### Scenes that took no part
 
-{len(PROOF)} more scenes ran after the numbers were fixed: {versions(rows, PROOF)}.
+{len(ran)} more scenes ran after the numbers were fixed: {versions(rows, ran)}. {len(THIRD_DRAW)} more were drawn before any of them ran. {len(THIRD_DRAW) - len(THIRD_STUDIES)} of these have the same μ twice, which
+no study can have, and the first {sum(own in THIRD_STUDIES for own in ran)} of the other {len(THIRD_STUDIES)} are among those that ran.
 
 {drawn_words(unseen)}
 ## Modes of steady sliding
@@ -781,7 +790,7 @@ Errors of the presets over the same scenes. The mesh of `draft` is mesh 1, that 
 
 All have four speeds: {", ".join(f"{share:g}" for share in SPEEDS)} times σ/√(Eρ), where σ is the mean pressure.
 
-{scene_table()}
+{scene_table(rows)}
 Young's modulus, density [kg/m³] and Poisson's ratio of a plate are those of steel.
 
 ## Not known

@@ -137,10 +137,12 @@ def run_suite():
     shutil.rmtree(EVIDENCE, ignore_errors=True)
     EVIDENCE.mkdir(parents=True)
     done = subprocess.run(
-        ["cargo", "test", "--release", "--test", "mechanics", "--test", "references", "--", "--include-ignored", "verification::"],
+        ["cargo", "test", "--release", "--test", "mechanics", "--test", "references", "--no-fail-fast", "--", "--include-ignored", "verification::"],
         cwd=runs.ROOT, env=dict(os.environ, TRIBOSWEEP_VERIFICATION=str(EVIDENCE)), stdout=subprocess.PIPE, text=True,
     )
     results = re.findall(r"(\d+) passed; (\d+) failed", done.stdout)
+    if len(results) != 2:
+        raise SystemExit(f"{done.stdout}\ncargo test has {len(results)} results instead of those of two programs")
     passed, failed = (sum(int(counts[at]) for counts in results) for at in (0, 1))
     if failed:
         print(done.stdout)

@@ -509,7 +509,10 @@ fn dependencies(module: &[String], text: &str, modules: &BTreeSet<Vec<String>>) 
     for path in declarations.flat_map(paths) {
         let supers = path.iter().take_while(|name| *name == "super").count();
         let base = match path[0].as_str() {
-            "crate" => Vec::new(),
+            // The root of the module's own crate, which may be a member of several rooms.
+            "crate" => {
+                module[..1].iter().filter(|first| MEMBERS.contains(&first.as_str())).cloned().collect()
+            }
             "super" => module[..module.len() - supers].to_vec(),
             _ => module.to_vec(),
         };
@@ -539,7 +542,10 @@ fn no_files_use_each_other_in_a_circle() {
         .map(|(file, text)| (module(file), dependencies(&module(file), text, &modules)))
         .filter(|(module, _)| module.last().is_some_and(|name| name != "tests" && name != "lib"))
         .collect();
-    assert!(uses.values().map(BTreeSet::len).sum::<usize>() > 500, "the declarations are found");
+    assert!(
+        uses.values().map(BTreeSet::len).sum::<usize>() > 1500,
+        "the declarations are found, also those from the root of a member"
+    );
     // Files that use no remaining file are taken away until only circles and what leads to them remain.
     loop {
         let remaining: BTreeSet<_> = uses.keys().cloned().collect();

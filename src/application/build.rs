@@ -18,7 +18,7 @@ fn main() {
         watch(&["rev-parse", "--git-path", &branch]);
     }
     let mut hasher = DefaultHasher::new();
-    let sources: &[&str] = if SOURCES.iter().all(|path| Path::new(path).exists()) { &SOURCES } else { &OWN };
+    let sources: &[&str] = if Path::new("../../src/application/build.rs").exists() { &SOURCES } else { &OWN };
     for &path in sources {
         println!("cargo::rerun-if-changed={path}");
         hash(Path::new(path), &mut hasher);

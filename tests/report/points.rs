@@ -31,7 +31,7 @@ fn point(row: &JobRow) -> StabilityPoint {
     let growth_rate_per_s = 1000.0 * (mu - 0.3);
     let mut stability = SlidingStability { mu_star: mu, ..SlidingStability::example() };
     stability.modes[0].growth_rate_per_s = growth_rate_per_s;
-    StabilityPoint { parameters: row.parameters.clone(), on_grid: true, stability }
+    StabilityPoint { parameters: row.parameters.clone(), on_grid: true, is_compared: false, stability }
 }
 
 /// Boundaries and minima along both parameters.

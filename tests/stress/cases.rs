@@ -28,7 +28,7 @@ fn told(seed: u64, index: u64, spec: &JobSpec, wrong: &str) -> String {
     let why = examine(&simple).err().unwrap_or_default();
     format!(
         "case {index} of seed {seed}: {wrong}\n  job: {}\n  simplest that fails, too: {}\n  because: {why}\n  repeat: \
-         TRIBOSWEEP_STRESS_SEED={seed} TRIBOSWEEP_STRESS_ONLY={index} cargo test --release --test mechanics every_case \
+         TRIBOSWEEP_STRESS_SEED={seed} TRIBOSWEEP_STRESS_ONLY={index} cargo test --release --test references every_case \
          -- --nocapture",
         job(spec),
         job(&simple)

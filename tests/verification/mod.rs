@@ -13,6 +13,7 @@ mod bouncing_bar;
 mod clamped_bar;
 mod clocks;
 mod common;
+mod criteria;
 mod cycle_identities;
 mod dissipation;
 mod elastic;

@@ -87,7 +87,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         let mut code = work_on(&plan, options(&args.threads, None), queue).await?;
         let points = read_stability(queue, &name).await?;
         let modes = ShownModes { count: args.modes.into(), near_hz: args.near };
-        let table = modes_table(points.iter().filter(|point| point.on_grid), modes);
+        let on_the_grid = || points.iter().filter(|point| point.on_grid);
+        let table = modes_table(on_the_grid(), modes);
         if args.near.is_some() {
             note_unknown_modes(&points);
         }
@@ -98,7 +99,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             stream(|out| Ok(table.write(Format::JsonLines, out)?))?;
         } else {
             print(&table.rounded(DIGITS).text())?;
-            if let Some(note) = unknown_errors(&points) {
+            if let Some(note) = unknown_errors(on_the_grid(), modes) {
                 print(&format!("{note}\n"))?;
             }
             if wanted.is_some() && !points.is_empty() {

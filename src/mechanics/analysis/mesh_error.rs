@@ -153,18 +153,23 @@ impl JobRecord {
         })
     }
 
+    /// Whether the modes were compared with those of a coarser mesh under the same clamp.
+    pub fn has_compared_modes(&self) -> bool {
+        self.start.as_ref().is_some_and(|coarser| coarser.same_clamp == Some(true))
+    }
+
     /// The record of modes with their errors, from those of the coarser mesh. The error of a mode that is not clearly the same one there
     /// stays unknown.
     #[must_use]
     pub(super) fn with_errors_of_modes(mut self) -> Self {
+        if !self.has_compared_modes() {
+            return self;
+        }
         let (Some(elements), Some(coarser), Some(stability)) =
             (self.elements, &self.start, &mut self.stability)
         else {
             return self;
         };
-        if coarser.same_clamp != Some(true) {
-            return self;
-        }
         let ratio = libm::cbrt(count(elements) / count(coarser.elements));
         let own = stability.modes.clone();
         for mode in &mut stability.modes {

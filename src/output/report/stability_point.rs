@@ -11,6 +11,8 @@ pub struct StabilityPoint {
     pub parameters: Parameters,
     /// Whether it is a point of the grid. The other ones refine thresholds.
     pub on_grid: bool,
+    /// Whether its modes were compared with those of a coarser mesh.
+    pub is_compared: bool,
     /// The eigenvalues.
     pub stability: SlidingStability,
 }

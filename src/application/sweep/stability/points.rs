@@ -30,9 +30,11 @@ pub async fn read_stability(queue: &mut Queue, study: &str) -> Result<Vec<Stabil
 }
 
 fn point(row: &JobRow, on_grid: bool) -> Option<StabilityPoint> {
+    let record = row.record()?;
     Some(StabilityPoint {
         parameters: row.parameters.clone(),
         on_grid,
-        stability: row.record()?.stability.clone()?,
+        is_compared: record.has_compared_modes(),
+        stability: record.stability.clone()?,
     })
 }

@@ -4,7 +4,7 @@ use crate::publish::page::{Block, Figure, Grid, MOST_DATA, Section, limited};
 use crate::publish::value;
 use crate::report::figure::stability::StabilityPlot;
 use crate::report::layout::{Group, MAX_GROUPS, MAX_SHEETS};
-use crate::report::stability::{Analysis, Files, GroupModes, Speed, unknown_errors};
+use crate::report::stability::{Analysis, Files, GroupModes, ShownModes, Speed, unknown_errors};
 
 /// What the section is about.
 const MEANING: [&str; 3] = [
@@ -69,7 +69,7 @@ pub(super) fn section(analysis: &Analysis, files: &Files) -> Section {
         analysis.along_in_words(),
         analysis.above_band(),
         not_converged(analysis),
-        unknown_errors(analysis.points()),
+        unknown_errors(analysis.points(), ShownModes::ALL),
     ];
     for (plot, figures) in &files.figures {
         for (number, figure) in figures.iter().take(MAX_SHEETS).enumerate() {

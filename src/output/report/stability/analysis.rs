@@ -288,7 +288,7 @@ mod tests {
         };
         let modes = modes.iter().map(mode).collect();
         let stability = SlidingStability { mu_star: mu, modes, ..SlidingStability::example() };
-        StabilityPoint { parameters: of(omega_rpm, mu, &[]), on_grid: true, stability }
+        StabilityPoint { parameters: of(omega_rpm, mu, &[]), on_grid: true, is_compared: false, stability }
     }
 
     /// Protects: modes of neighbouring speeds with nearly the same frequency are one family, the one with the smallest threshold

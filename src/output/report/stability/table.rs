@@ -85,20 +85,31 @@ pub fn modes_table<'a>(points: impl IntoIterator<Item = &'a StabilityPoint>, sho
     Table::of("modes", &columns, &points.into_iter().flat_map(of_point).collect::<Vec<_>>())
 }
 
-/// Why modes have no mesh error, in words; `None` if all of them have one, or there are none.
-pub fn unknown_errors(points: &[StabilityPoint]) -> Option<String> {
-    let modes = || points.iter().flat_map(|point| &point.stability.modes);
-    let unknown = modes().filter(|mode| mode.growth_rate_mesh_error_per_s.is_none()).count();
-    let all = modes().count();
-    let reason = match unknown {
-        0 => return None,
-        of_all if of_all == all => {
-            "they are known on one mesh alone, because the study starts from rest, or because the pin has no coarser mesh to compare with (few \
-             elements, a mesh from a file, a clamp without a row of nodes there, or an elastic disk)"
-        }
-        _ => "no mode on the coarser mesh is clearly the same, or there is no such mesh",
-    };
-    Some(format!("Of {}, {unknown} have no known mesh error: {reason}.", value::count(all, "mode")))
+/// Why modes that are shown have no mesh error, in words; `None` if all of them have one, or there are none.
+pub fn unknown_errors<'a>(
+    points: impl IntoIterator<Item = &'a StabilityPoint>,
+    shown: ShownModes,
+) -> Option<String> {
+    let (mut all, mut alone, mut apart) = (0, 0, 0);
+    for point in points {
+        let modes = &point.stability.modes;
+        let shown = shown.of(modes);
+        let unknown =
+            shown.iter().filter(|&&index| modes[index].growth_rate_mesh_error_per_s.is_none()).count();
+        *(if point.is_compared { &mut apart } else { &mut alone }) += unknown;
+        all += shown.len();
+    }
+    let reasons = [
+        (alone, ["was", "were"], "computed on one mesh alone"),
+        (apart, ["has", "have"], "no mode on the coarser mesh that is clearly the same"),
+    ];
+    let reasons = reasons.into_iter().filter(|(count, ..)| *count > 0);
+    let reasons =
+        reasons.map(|(count, verbs, rest)| format!("{count} {} {rest}", verbs[usize::from(count != 1)]));
+    let reasons: Vec<String> = reasons.collect();
+    let all = value::count(all, "mode");
+    (!reasons.is_empty())
+        .then(|| format!("Not every mesh error is known. Of {all}, {}.", reasons.join(", and ")))
 }
 
 /// A series of points along the parameter of the thresholds, with the other parameters, and a range in which a mode grows.
