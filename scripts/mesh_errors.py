@@ -762,7 +762,7 @@ to {SHARE["mu_star"]:g}. For these {len(DRAWN)} scenes together:
 ### Scenes that took no part
 
 {len(ran)} more scenes ran after the numbers were fixed: {versions(rows, ran)}. {len(THIRD_DRAW)} more were drawn before any of them ran. {len(THIRD_DRAW) - len(THIRD_STUDIES)} of these have the same μ twice, which
-no study can have, and the first {sum(own in THIRD_STUDIES for own in ran)} of the other {len(THIRD_STUDIES)} are among those that ran.
+no study can have. Of the other {len(THIRD_STUDIES)}, {sum(own in THIRD_STUDIES for own in ran)} ran, in the order of the draw.
 
 {drawn_words(unseen)}
 ## Modes of steady sliding
