@@ -496,9 +496,8 @@ def ran_of(rows, scenes):
 
 
 def versions(rows, scenes):
-    """How many scenes ran with which version of the solver, in words."""
-    by_scene = {row["scene"]: row["solver_version"] for row in rows}
-    found = [by_scene[own["name"]] for own in scenes]
+    """How many scenes ran with which version of the solver, in words. The oldest result of a scene counts."""
+    found = [min(int(row["solver_version"]) for row in rows if row["scene"] == own["name"]) for own in scenes]
     return ", ".join(f"{found.count(version)} with version {version} of the solver" for version in sorted(set(found)))
 
 

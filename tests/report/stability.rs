@@ -56,17 +56,17 @@ fn a_threshold_has_the_error_of_its_growth_rates() {
     assert_eq!(with_error([Some(20.0), None]), "0.22");
 }
 
-/// Protects: who reads modes without an error learns why, of the modes that the table shows: their point has one mesh, or the mode has no
+/// Protects: who reads modes without an error learns why, of the modes that the table shows: their point has no coarser mesh, or the mode has no
 /// partner on the other one.
 #[test]
 fn modes_without_an_error_have_a_reason() {
     let mut points = [point(1.0, 0.1), point(1.0, 0.2)];
     let of = |points: &[StabilityPoint], count| unknown_errors(points, ShownModes { count, near_hz: None });
-    let alone = "Not every mesh error is known. Of 4 modes, 4 were computed on one mesh alone.";
+    let alone = "Not every mesh error is known. Of 4 modes, 4 have no coarser mesh to be compared with.";
     assert_eq!(of(&points, 2).as_deref(), Some(alone));
     points[0].is_compared = true;
     points[0].stability.modes[0].growth_rate_mesh_error_per_s = Some(10.0);
-    let both = "Not every mesh error is known. Of 4 modes, 2 were computed on one mesh alone, and 1 has no mode on the coarser mesh that is \
+    let both = "Not every mesh error is known. Of 4 modes, 2 have no coarser mesh to be compared with, and 1 has no mode on the coarser mesh that is \
                 clearly the same.";
     assert_eq!(of(&points, 2).as_deref(), Some(both));
     // The leading mode has its error, and the other one is not shown.

@@ -155,7 +155,8 @@ impl JobRecord {
 
     /// Whether the modes were compared with those of a coarser mesh under the same clamp.
     pub fn has_compared_modes(&self) -> bool {
-        self.start.as_ref().is_some_and(|coarser| coarser.same_clamp == Some(true))
+        let coarser = self.start.as_ref();
+        coarser.is_some_and(|coarser| coarser.same_clamp == Some(true) && !coarser.modes.is_empty())
     }
 
     /// The record of modes with their errors, from those of the coarser mesh. The error of a mode that is not clearly the same one there

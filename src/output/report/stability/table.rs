@@ -100,13 +100,14 @@ pub fn unknown_errors<'a>(
         all += shown.len();
     }
     let reasons = [
-        (alone, ["was", "were"], "computed on one mesh alone"),
-        (apart, ["has", "have"], "no mode on the coarser mesh that is clearly the same"),
+        (alone, "no coarser mesh to be compared with"),
+        (apart, "no mode on the coarser mesh that is clearly the same"),
     ];
-    let reasons = reasons.into_iter().filter(|(count, ..)| *count > 0);
-    let reasons =
-        reasons.map(|(count, verbs, rest)| format!("{count} {} {rest}", verbs[usize::from(count != 1)]));
-    let reasons: Vec<String> = reasons.collect();
+    let reasons: Vec<String> = reasons
+        .into_iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, what)| format!("{count} {} {what}", if count == 1 { "has" } else { "have" }))
+        .collect();
     let all = value::count(all, "mode");
     (!reasons.is_empty())
         .then(|| format!("Not every mesh error is known. Of {all}, {}.", reasons.join(", and ")))
