@@ -108,7 +108,15 @@ for target in "${targets[@]}"; do
     package="$scratch/$name"
     mkdir -p "$package/completions"
     cp "$program" LICENSE-MIT LICENSE-APACHE CHANGELOG.md CITATION.cff "$package"
-    cp README.md SECURITY.md "$package"
+    cp SECURITY.md "$package"
+    # The README of the sources, without what only they have.
+    sed -e '/^\[ARCHITECTURE\.md\]/d' -e '/^Nothing is published yet/d' -e '/^cargo test/d' -e '/^The first build takes/d' -e '/^`scripts\//d' \
+        -e 's/^In the sources, with .*:$/In this folder:/' -e 's/^cargo run --release -- run/.\/tribosweep run/' -e 's/^## Two commands/## The first command/' \
+        README.md > "$package/README.md"
+    if grep -n -e cargo -e 'scripts/' -e 'src/' -e ARCHITECTURE "$package/README.md"; then
+        echo "the README of the archive names what it does not have"
+        exit 1
+    fi
     cp -r docs "$package/docs"
     cp -r studies "$package"
     for shell in bash fish zsh; do

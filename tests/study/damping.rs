@@ -312,7 +312,7 @@ fn a_collet_needs_a_length_and_a_row() {
         (r#", "width_m": 0.03"#, "of at most 0.02 m, the pin's edge in z"),
         (
             r#", "width_m": 0.01 }, "holder": { "rotational_stiffness_x_nm_rad": 100"#,
-            "scene.clamp.side = collet: expected another side with a holder that rotates",
+            "scene.clamp.side = collet: expected another side with a holder that rotates, which carries the top face alone; for a chuck, give",
         ),
     ] {
         assert_contains(&refusal(&study(more)), &[expected]);

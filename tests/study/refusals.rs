@@ -50,6 +50,11 @@ fn unknown_fields_are_refused_with_a_suggestion() {
         ["studies/x.json:1:23: scene.pin.poison_ratio = 0.3: no such field", "did you mean `poisson_ratio`?"];
     assert_contains(&refusal(typo), &expected);
     assert_contains(&refusal(r#"{ "mu": 3 }"#), &["studies/x.json:1:3: mu = 3: no such field", "`grid`"]);
+    // The name of a parameter where its field belongs. Elsewhere it is no field of any kind.
+    let load = refusal(r#"{ "scene": { "load": { "load_n": 3 } } }"#);
+    assert_contains(&load, &["scene.load.load_n = 3: no such field", "did you mean `force_n`?"]);
+    let elsewhere = refusal(r#"{ "scene": { "disk": { "load_n": 3 } } }"#);
+    assert!(!elsewhere.contains("did you mean"), "{elsewhere}");
 }
 
 #[test]

@@ -115,8 +115,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         .map(|path| sweep::read_calibration_data(path, args.bins.number()))
         .transpose()?;
     let (points, settings) = match data {
-        Some(CalibrationData { points, settings, left_out }) => {
-            if let Some(sentence) = left_out {
+        Some(CalibrationData { points, settings, warnings }) => {
+            for sentence in warnings {
                 log(format_args!("warning: {sentence}"));
             }
             (Some(points), settings)

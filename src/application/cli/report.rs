@@ -6,7 +6,7 @@ use super::signals::raise_on_signal;
 use super::unreadable::log_unreadable_rows;
 use crate::exit;
 use crate::queue::{Location, Queue};
-use crate::report::accuracy;
+use crate::report::trouble;
 use crate::study::Spacing;
 use crate::sweep::{self, MOST_BINS, Purpose, ReportContent, ReportRequest, Revision};
 use crate::worker::Interrupt;
@@ -183,7 +183,7 @@ pub(crate) async fn write(
     folder: &Path,
     refresh_s: Option<u32>,
 ) -> Result<(), CliError> {
-    for sentence in &content.left_out {
+    for sentence in &content.warnings {
         log(format_args!("warning: {sentence}"));
     }
     let written = sweep::write_content(queue, content, folder, refresh_s).await?;
@@ -199,8 +199,7 @@ pub(crate) async fn write(
             log(format_args!("  {line}"));
         }
     }
-    let doubts = [accuracy::not_reached(&content.rows), accuracy::still_yielding(&content.rows)];
-    for sentence in doubts.into_iter().flatten() {
+    for sentence in trouble::warnings(&content.rows) {
         log(format_args!("warning: {sentence}"));
     }
     log(format_args!("report written to {}", folder.display()));

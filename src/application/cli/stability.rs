@@ -24,8 +24,8 @@ use crate::sweep::{
 };
 use std::path::PathBuf;
 
-/// Significant digits of numbers on a terminal.
-const DIGITS: usize = 6;
+/// Significant digits of numbers on a terminal. Without a mesh error fewer would be known; `modes.csv` has all digits.
+const DIGITS: usize = 4;
 
 /// Arguments of `stability`.
 #[derive(Debug, clap::Args)]
@@ -98,7 +98,11 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         if args.json {
             stream(|out| Ok(table.write(Format::JsonLines, out)?))?;
         } else {
-            print(&table.rounded(DIGITS).text())?;
+            let (table, constant) = table.rounded(DIGITS).without_constants();
+            print(&table.text())?;
+            if !constant.is_empty() {
+                print(&format!("In all lines: {}.\n", constant.join(", ")))?;
+            }
             if let Some(note) = unknown_errors(on_the_grid(), modes) {
                 print(&format!("{note}\n"))?;
             }

@@ -160,7 +160,10 @@ impl SourceText {
         } else {
             self.problem(&field, mismatch.message)
         };
-        problem.help.extend(mismatch.suggestion.map(|name| format!("did you mean `{name}`?")));
+        let of_parameter = Some(&field).filter(|_| mismatch.is_name).and_then(|field| meant_field(field));
+        problem
+            .help
+            .extend(of_parameter.or(mismatch.suggestion).map(|name| format!("did you mean `{name}`?")));
         if problem.message == NUMBER {
             // The value as the file has it, in quotes.
             let text = problem.value.as_deref().and_then(|value| serde_json::from_str::<String>(value).ok());
@@ -186,6 +189,14 @@ impl SourceText {
     fn value_text(&self, span: &FieldSpan) -> String {
         shorten(&self.text[span.bytes.clone()])
     }
+}
+
+/// The field of a parameter whose own name stands for it, in the object to which it belongs: `force_n` for `scene.load.load_n`.
+fn meant_field(field: &str) -> Option<String> {
+    let (object, name) = field.rsplit_once('.')?;
+    let meant = Parameter::find(name)?.field();
+    let (of_meant, meant) = meant.rsplit_once('.')?;
+    (of_meant == object).then(|| meant.to_owned())
 }
 
 /// What to do about a text that is not JSON, as lines of help; empty if nothing is known.

@@ -65,11 +65,8 @@ pub(super) fn averaged(file: MeasuredFile, bins: usize) -> Option<MeasuredFile> 
     let rows: Vec<JobRow> = filled.map(|rows| mean(rows, along, &of)).collect();
     let without = file.rows.len() - values().count();
     let words = (without > 0).then(|| format!("{without} rows have no {along} and are in no bin"));
-    let left_out = match (file.left_out, words) {
-        (Some(others), Some(words)) => Some(format!("{others}; {words}")),
-        (others, words) => others.or(words),
-    };
-    Some(MeasuredFile { parameters: file.parameters, rows, left_out, has_thresholds: false })
+    let warnings = file.warnings.iter().cloned().chain(words).collect();
+    Some(MeasuredFile { parameters: file.parameters, rows, warnings, has_thresholds: false })
 }
 
 /// The parameter with the most values, if it has two that are numbers.

@@ -15,8 +15,8 @@ pub struct CalibrationData {
     pub points: Vec<MeasuredPoint>,
     /// What the file sets in the study, as `--set` does: the parameter that varies as a list, and the others, which have one value.
     pub settings: Vec<(String, String)>,
-    /// What was left out of the file, in a sentence; none if nothing was.
-    pub left_out: Option<String>,
+    /// What was left out of the file, and what looks wrong in it, in sentences.
+    pub warnings: Vec<String>,
 }
 
 /// Reads a file of measured points for a calibration: its rows, or their means in `count` bins of the parameter that varies.
@@ -119,7 +119,7 @@ pub fn read_calibration_data(path: &Path, count: Option<usize>) -> Result<Calibr
             ));
         }
     }
-    Ok(CalibrationData { points, settings, left_out: file.left_out })
+    Ok(CalibrationData { points, settings, warnings: file.warnings })
 }
 
 fn values(file: &MeasuredFile, name: &str) -> Vec<Value> {

@@ -1,14 +1,11 @@
 //! Files of measured points, for comparison with studies: CSV with a column for each parameter and result.
 
-use super::header::suggestion;
+use super::measured_columns::{Column, SQUEALS, columns};
 use super::threshold::Threshold;
-use crate::report::columns::ExportColumn;
-use crate::report::{FREQUENCY, JobRow, MeasuredValue, Measurement, Parameters, RowState, SCALARS, Scalar};
-use crate::study::{PARAMETERS, Parameter, read_text};
-use crate::units::name_and_unit;
+use crate::report::{FREQUENCY, JobRow, MeasuredValue, Measurement, Parameters, RowState};
+use crate::study::read_text;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use serde_json::Value;
-use std::collections::HashSet;
 use std::path::Path;
 use thiserror::Error;
 
@@ -44,35 +41,14 @@ pub(super) struct MeasuredFile {
     pub parameters: Vec<&'static str>,
     /// The points. Parameters other than ω and μ are in the order of `parameters`.
     pub rows: Vec<JobRow>,
-    /// What was left out of the file, in a sentence; none if nothing was.
-    pub left_out: Option<String>,
+    /// What was left out of the file, and what looks wrong in it, in sentences.
+    pub warnings: Vec<String>,
     /// Whether the file has a column for errors of thresholds.
     pub has_thresholds: bool,
 }
 
-/// Columns that are not read: names and states, as an export has them, and remarks.
-const IGNORED: [&str; 7] = ["study", "job", "regime", "error", "wall_s", "note", "comment"];
-
-/// The column that says whether a point squeals, and that of an export, whose outcomes say it.
-const SQUEALS: &str = "squeals";
-const STATUS: &str = "status";
-
 /// The largest file \[byte\]: some ten million rows.
 const MOST_BYTES: u64 = 1 << 30;
-
-/// What a column has.
-enum Column {
-    Parameter(&'static Parameter),
-    Result(&'static Scalar),
-    Error(&'static Scalar),
-    /// The error of a threshold along a parameter.
-    ParameterError(&'static Parameter),
-    Squeals,
-    Status,
-    Ignored,
-    /// A column of the file's author, which is ignored and named.
-    Unknown,
-}
 
 /// A file while it is read, for messages.
 struct Place<'a> {
@@ -130,7 +106,8 @@ pub(super) fn parse(text: &str, file: &str, source_name: &str) -> Result<Measure
     let header = reader.headers().map_err(not_csv)?.clone();
     let mut lines = Lines { text, byte: 0, line: 1 };
     let place = Place { file, line: lines.of(&header), has_decimal_comma };
-    let columns = columns(&header, &place)?;
+    let header_line = place.line;
+    let columns = columns(&header).map_err(|wrong| place.error(wrong.column.as_deref(), wrong.message))?;
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(not_csv)?;
@@ -153,15 +130,44 @@ pub(super) fn parse(text: &str, file: &str, source_name: &str) -> Result<Measure
     });
     let unknown = header.iter().zip(&columns).filter(|(_, column)| matches!(column, Column::Unknown));
     let unknown: Vec<String> = unknown.map(|(name, _)| format!("`{name}`")).collect();
-    let left_out = (!unknown.is_empty()).then(|| {
+    let named = (!unknown.is_empty()).then(|| {
         let (columns, are) = if unknown.len() == 1 { ("column", "is") } else { ("columns", "are") };
         let names = unknown.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
         let more = unknown.len().saturating_sub(MOST_NAMED);
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        format!("{file}: {columns} {names}{more} {are} no parameter and no result, and left out")
+        format!("{columns} {names}{more} {are} no parameter and no result")
     });
+    if let Some(named) = &named
+        && !columns.iter().any(|column| matches!(column, Column::Parameter(_)))
+    {
+        let message =
+            format!("{named}; expected a column with a parameter of the study, such as omega_rpm or mu");
+        return Err(MeasuredError::Content {
+            file: file.to_owned(),
+            line: header_line,
+            column: None,
+            message,
+        });
+    }
+    let left_out = named.map(|named| format!("{file}: {named}, and left out"));
     let has_thresholds = columns.iter().any(|column| matches!(column, Column::ParameterError(_)));
-    Ok(MeasuredFile { parameters: parameters.collect(), rows, left_out, has_thresholds })
+    let warnings = left_out.into_iter().chain(low_frequencies(file, &rows)).collect();
+    Ok(MeasuredFile { parameters: parameters.collect(), rows, warnings, has_thresholds })
+}
+
+/// Frequencies of squeal below this one \[Hz\] are probably in kHz: a person hears vibrations from 20 Hz on, and an ultrasonic one of 90 kHz is
+/// above it, too.
+const LOW_HZ: f64 = 100.0;
+
+/// A warning if all frequencies look like kHz.
+fn low_frequencies(file: &str, rows: &[JobRow]) -> Option<String> {
+    let values = || rows.iter().filter_map(|row| FREQUENCY.value(row));
+    let largest_hz = values().reduce(f64::max).filter(|largest_hz| *largest_hz < LOW_HZ)?;
+    Some(format!(
+        "{file}: column {} has no frequency above {largest_hz} Hz; if they are in kHz, write {} instead of {largest_hz}",
+        FREQUENCY.name,
+        1000.0 * largest_hz
+    ))
 }
 
 /// Most columns that a message names.
@@ -178,76 +184,6 @@ impl Place<'_> {
         let column = column.map(str::to_owned);
         MeasuredError::Content { file: self.file.to_owned(), line: self.line, column, message }
     }
-}
-
-/// The column with the error of another one: `mu_star_error`, `frequency_error_hz`.
-fn error_column(name: &str) -> String {
-    let (stem, _) = name_and_unit(name);
-    format!("{stem}_error{}", &name[stem.len()..])
-}
-
-/// The result whose error an export calls so: `mu_star_se`.
-fn exported_error(name: &str) -> Option<&'static Scalar> {
-    Scalar::find(ExportColumn::find(name)?.error_of()?)
-}
-
-/// All names that a column can have.
-fn known_names() -> Vec<String> {
-    let parameters = PARAMETERS.iter().map(|parameter| parameter.name.to_owned());
-    let own = IGNORED.iter().chain(&[SQUEALS, STATUS]).map(|name| (*name).to_owned());
-    let thresholds = PARAMETERS.iter().filter(|own| own.is_number()).map(|own| error_column(own.name));
-    let results = SCALARS.iter().flat_map(|scalar| [scalar.name.to_owned(), error_column(scalar.name)]);
-    parameters.chain(results).chain(thresholds).chain(own).collect()
-}
-
-fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, MeasuredError> {
-    let known = known_names();
-    let mut columns = Vec::new();
-    let mut names = HashSet::new();
-    for name in header {
-        if !names.insert(name) {
-            return Err(
-                place.error(Some(name), "the file has this column twice; expected it once".to_owned())
-            );
-        }
-        let of_error = || SCALARS.iter().find(|scalar| error_column(scalar.name) == name);
-        let of_threshold = || PARAMETERS.iter().find(|own| own.is_number() && error_column(own.name) == name);
-        // A parameter that has the name of a result has another one in an export, too.
-        let parameter = name.strip_prefix("parameter_").unwrap_or(name);
-        columns.push(if IGNORED.contains(&name) {
-            Column::Ignored
-        } else if name == SQUEALS {
-            Column::Squeals
-        } else if name == STATUS {
-            Column::Status
-        } else if let Some(scalar) = exported_error(name) {
-            Column::Error(scalar)
-        } else if let Some(scalar) = Scalar::find(name) {
-            Column::Result(scalar)
-        } else if let Some(parameter) = Parameter::find(parameter) {
-            Column::Parameter(parameter)
-        } else if let Some(scalar) = of_error() {
-            Column::Error(scalar)
-        } else if let Some(parameter) = of_threshold() {
-            Column::ParameterError(parameter)
-        } else if let Some(meant) = suggestion(name, &known) {
-            // Without it, a misspelt result would be missing in silence.
-            let expected = "expected omega_rpm, mu or another parameter, a result such as mu_star or frequency_hz, its error \
-                            such as mu_star_error or frequency_error_hz, squeals, the error of a threshold such as omega_error_rpm, or \
-                            note";
-            let message = format!("no such column; {meant}\n  help: {expected}");
-            return Err(place.error(Some(name), message));
-        } else {
-            Column::Unknown
-        });
-    }
-    if !columns.iter().any(|column| matches!(column, Column::Result(_) | Column::Squeals)) {
-        let message =
-            "expected a column with results: mu_star, frequency_hz, squeals or another number of the export"
-                .to_owned();
-        return Err(place.error(None, message));
-    }
-    Ok(columns)
 }
 
 /// The point of a line, or the two around a threshold; none if the line has no result.
@@ -436,9 +372,27 @@ mod tests {
         let found = parse("omega_rpm;mu_star;Bemerkung\n7;0,3;erste\n", "points.csv", "points").unwrap();
         assert_eq!(found.rows.len(), 1);
         let left_out = "points.csv: column `Bemerkung` is no parameter and no result, and left out";
-        assert_eq!(found.left_out.as_deref(), Some(left_out));
+        assert_eq!(found.warnings, [left_out]);
         let found = parse("omega_rpm,mu_star,note\n7,0.3,first\n", "points.csv", "points").unwrap();
-        assert_eq!(found.left_out, None);
+        assert!(found.warnings.is_empty(), "{found:?}");
+        // Without a parameter, no point belongs to a job.
+        let refused = refusal("# day 1\nomega_rads,mu_star\n7,0.3\n");
+        assert!(
+            refused.starts_with(
+                "points.csv:2: column `omega_rads` is no parameter and no result; expected a column with"
+            ),
+            "{refused}"
+        );
+    }
+
+    /// Protects: who writes frequencies in kHz is asked, and who has one low frequency among others is not.
+    #[test]
+    fn frequencies_in_khz_are_named() {
+        let warnings = |text: &str| parse(text, "points.csv", "points").unwrap().warnings;
+        let low = "points.csv: column frequency_hz has no frequency above 11.5 Hz; if they are in kHz, write 11500 instead of 11.5";
+        assert_eq!(warnings("omega_rpm,frequency_hz\n7,11\n8,11.5\n9,0\n"), [low]);
+        assert_eq!(warnings("omega_rpm,frequency_hz\n7,90\n8,11500\n"), Vec::<String>::new());
+        assert_eq!(warnings("omega_rpm,frequency_hz,squeals\n7,0,\n8,,no\n"), Vec::<String>::new());
     }
 
     /// Protects: a point says whether it squeals: in a column of its own, by a frequency, by none of 0 Hz, or by the outcome in an

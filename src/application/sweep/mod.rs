@@ -26,6 +26,7 @@ mod growth;
 mod header;
 mod history;
 mod measured;
+mod measured_columns;
 mod numerics;
 mod outlook;
 mod plan;

@@ -55,8 +55,8 @@ pub struct ReportContent {
     pub view: View,
     /// The study that shows what could move the first one nearer to the others, and its jobs.
     pub sensitivity: Option<(String, Vec<JobRow>)>,
-    /// What was left out of files of measured points, in sentences.
-    pub left_out: Vec<String>,
+    /// What was left out of files of measured points, and what looks wrong in them, in sentences.
+    pub warnings: Vec<String>,
 }
 
 /// A study of the database as it was submitted.
@@ -279,9 +279,9 @@ pub async fn read_report(queue: &mut Queue, request: &ReportRequest) -> Result<R
     }
     let mut rows: Vec<JobRow> = of_studies.into_iter().flatten().collect();
     let jobs = rows.len();
-    let mut left_out = Vec::new();
+    let mut warnings = Vec::new();
     for mut file in files {
-        left_out.extend(file.left_out.take());
+        warnings.append(&mut file.warnings);
         rows.extend(completed(file, &rows[..jobs], &names));
     }
     let view = request.view(&studies, &rows)?;
@@ -290,7 +290,7 @@ pub async fn read_report(queue: &mut Queue, request: &ReportRequest) -> Result<R
         None => None,
     };
     let studies = request.studies.clone();
-    Ok(ReportContent { title: request.title(), studies, rows, view, sensitivity, left_out })
+    Ok(ReportContent { title: request.title(), studies, rows, view, sensitivity, warnings })
 }
 
 /// Gives the rows of a study the parameters that its grid does not have, with the values of the jobs.

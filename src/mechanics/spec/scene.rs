@@ -265,7 +265,8 @@ impl Scene {
                 found.add("scene.clamp.width_m", width, "a length > 0 m that the collet holds");
             }
             if self.holder.rotates() {
-                let right = "another side with a holder that rotates, which carries the top face alone";
+                let right = "another side with a holder that rotates, which carries the top face alone; \
+                             for a chuck, give the pin without its gripped part, and whole_top";
                 found.add("scene.clamp.side", self.clamp.side.name(), right);
             }
         }

@@ -200,6 +200,27 @@ impl Table {
         self
     }
 
+    /// The table without the columns that have one value in all lines, and each of these with its value, for a terminal that is not wide. A table
+    /// of one line keeps all columns.
+    #[must_use]
+    pub fn without_constants(mut self) -> (Self, Vec<String>) {
+        let cells = self.cells();
+        let [first, others @ ..] = &cells[..] else { return (self, Vec::new()) };
+        let is_constant: Vec<bool> = (0..self.heads.len())
+            .map(|column| !others.is_empty() && others.iter().all(|line| line[column] == first[column]))
+            .collect();
+        let constant = self.names().zip(first).zip(&is_constant).filter(|(_, constant)| **constant);
+        let named = constant.map(|((name, cell), _)| format!("{name} {cell}")).collect();
+        let heads = self.heads.into_iter().zip(&is_constant).filter(|(_, constant)| !**constant);
+        self.heads = heads.map(|(head, _)| head).collect();
+        for line in &mut self.lines {
+            let cells =
+                std::mem::take(line).into_iter().zip(&is_constant).filter(|(_, constant)| !**constant);
+            *line = cells.map(|(cell, _)| cell).collect();
+        }
+        (self, named)
+    }
+
     /// Aligned columns for a terminal: texts on the left side of their column, numbers on the right side.
     pub fn text(&self) -> String {
         let is_number = |column: usize| {
@@ -399,6 +420,23 @@ mod tests {
     }
 
     /// Protects: header and cells come from the same columns in every format, texts are quoted, a number reads back as the same
+    /// Protects: a column that says the same in all lines is said once, and every cell of the others stays in its column. One line is no
+    /// comparison.
+    #[test]
+    fn what_does_not_vary_is_said_once() {
+        let head = |name: &'static str| Head::new(name, "", "");
+        let heads = vec![head("a"), head("b"), head("c"), head("d")];
+        let line = |b: u32, d: Value| vec![Value::from(1), Value::from(b), Value::Null, d];
+        let lines = vec![line(1, true.into()), line(2, false.into()), line(3, true.into())];
+        let table = Table { stem: "x".into(), heads, lines };
+        let (varying, constant) = table.clone().without_constants();
+        assert_eq!(varying.names().collect::<Vec<_>>(), ["b", "d"]);
+        assert_eq!(varying.cells(), [["1", "yes"], ["2", "no"], ["3", "yes"]]);
+        assert_eq!(constant, ["a 1", "c –"]);
+        let one = Table { lines: table.lines[..1].to_vec(), ..table };
+        assert_eq!(one.clone().without_constants(), (one, Vec::new()));
+    }
+
     /// number, and a value that is missing is an empty cell or null.
     #[test]
     fn formats_have_the_same_cells() {

@@ -81,30 +81,3 @@ fn asked_in_words(rows: &[JobRow]) -> Option<String> {
         )),
     }
 }
-
-/// A warning about jobs of which the material goes on yielding; none if there are no such jobs.
-pub fn still_yielding(rows: &[JobRow]) -> Option<String> {
-    let yields = |row: &&JobRow| {
-        row.record().is_some_and(|record| record.plastic.is_some_and(|flow| flow.is_yielding()))
-    };
-    let jobs = rows.iter().filter(yields).count();
-    (jobs > 0).then(|| {
-        format!(
-            "in {} the material goes on yielding within the averaging window (column plastic_share)",
-            count(jobs, "job")
-        )
-    })
-}
-
-/// A warning about jobs that do not reach the accuracy that they ask for; none if there are no such jobs.
-pub fn not_reached(rows: &[JobRow]) -> Option<String> {
-    let is_not_reached =
-        |row: &&JobRow| row.record().is_some_and(|record| record.accuracy_reached == Some(false));
-    let jobs = rows.iter().filter(is_not_reached).count();
-    (jobs > 0).then(|| {
-        format!(
-            "{} not reach the accuracy that is asked for, also on the finest mesh",
-            if jobs == 1 { "1 job does".to_owned() } else { format!("{jobs} jobs do") }
-        )
-    })
-}

@@ -125,6 +125,9 @@ impl Comparison {
                 }
             }
             let none = matches.none_in_words(source.name, layout.sources[0].name);
+            if source.is_measured && none.is_none() {
+                comparison.unmatched.extend(matches.some_in_words(source.name, layout.sources[0].name));
+            }
             if none.is_none() && says_squeal && comparison.compared_squeals == compared_before {
                 comparison.unmatched.push(format!(
                     "whether {} squeals is compared at none of its points: they lie beyond the jobs of {}, or between one that squeals and one \
@@ -393,6 +396,19 @@ impl Matches {
             format!(
                 "no point of {source} is at the parameters of a job of {reference}, or between two of its jobs: nothing of {source} is \
                  compared"
+            )
+        })
+    }
+
+    /// That some points have no counterpart, in a sentence; none if all have one.
+    fn some_in_words(&self, source: &str, reference: &str) -> Option<String> {
+        (self.elsewhere > 0).then(|| {
+            format!(
+                "{} of the {} points of {source} {} compared with nothing: no job of {reference} is at their parameters, or on both sides of \
+                 them",
+                self.elsewhere,
+                self.equal + self.between + self.elsewhere,
+                if self.elsewhere == 1 { "is" } else { "are" }
             )
         })
     }

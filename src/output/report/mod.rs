@@ -13,7 +13,7 @@
 //! * [`write_stability`] – the linear stability of steady sliding: maps, branches of modes, thresholds.
 //! * [`write()`] – a folder with all of it, and a page for a browser that contains all of it.
 
-pub mod accuracy;
+mod accuracy;
 mod calibration;
 pub mod columns;
 mod comparison;

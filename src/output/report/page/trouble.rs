@@ -1,7 +1,6 @@
-//! Jobs that failed, that did not become periodic or as exact as they ask for, that go on yielding, or that are missing: where they are in
-//! the grid, and why.
+//! Jobs that failed, that did not become periodic, whose results should be doubted, or that are missing: where they are in the grid, and why.
 
-use crate::analysis::{Outcome, PlasticFlow};
+use crate::analysis::Outcome;
 use crate::publish::page::{Block, Grid, Section, Text};
 use crate::publish::value;
 use crate::report::layout::parameters_in_words;
@@ -20,14 +19,15 @@ pub(super) fn section(rows: &[JobRow]) -> Option<Section> {
     }
     blocks.extend(list("Failed jobs", rows, failed));
     blocks.extend(list("Not periodic", rows, not_periodic));
-    blocks.extend(list("Accuracy not reached", rows, not_accurate));
-    blocks.extend(list("Still yielding", rows, yields));
+    for doubt in &trouble::DOUBTS {
+        blocks.extend(list(doubt.heading, rows, |row| (doubt.why)(row).map(Text::from)));
+    }
     blocks.extend(list("Missing jobs", rows, missing));
     (!blocks.is_empty()).then(|| Section::new("trouble", "Trouble", blocks))
 }
 
 /// A table of the rows for which `why` returns a reason.
-fn list(heading: &str, rows: &[JobRow], why: fn(&JobRow) -> Option<Text>) -> Vec<Block> {
+fn list(heading: &str, rows: &[JobRow], why: impl Fn(&JobRow) -> Option<Text>) -> Vec<Block> {
     let count = rows.iter().filter(|row| why(row).is_some()).count();
     if count == 0 {
         return Vec::new();
@@ -55,31 +55,6 @@ fn not_periodic(row: &JobRow) -> Option<Text> {
         value::quantity(record.simulated_s, "s"),
         MU_STAR.text_with_error(record.mu_star, Some(record.mu_star_se)),
         record.cycles
-    );
-    Some(words.into())
-}
-
-fn not_accurate(row: &JobRow) -> Option<Text> {
-    let record = row.record().filter(|record| record.accuracy_reached == Some(false))?;
-    let words = match record.mesh_error() {
-        Ok(_) if record.start.is_none() => "there is no coarser mesh to compare with".to_owned(),
-        Ok(own) => format!(
-            "the error of μ* may be {}, {} % of it",
-            value::significant(own.mu_star, 2),
-            value::significant(100.0 * own.mu_star / record.mu_star.abs(), 2)
-        ),
-        Err(why) => format!("the error of μ* is unknown: {}", why.reason()),
-    };
-    Some(words.into())
-}
-
-/// A job that goes on yielding.
-fn yields(row: &JobRow) -> Option<Text> {
-    let flow = row.record()?.plastic.filter(PlasticFlow::is_yielding)?;
-    let words = format!(
-        "the plastic work is {} % of the sum of it and the work of friction in the window, and the shape of the pin may go on changing; the largest plastic strain is {}",
-        value::significant(100.0 * flow.share, 2),
-        value::significant(flow.strain_max, 2)
     );
     Some(words.into())
 }

@@ -1,12 +1,14 @@
-//! Where in the grid jobs fail or do not become periodic, and why.
+//! Where in the grid jobs fail or do not become periodic, and why; and which results should be doubted.
 //!
 //! Jobs that are in trouble for the same cause and that are neighbours in the grid form a region. A region is described
 //! by the ranges of its parameters, and by how many of the jobs within these ranges are in trouble.
 
 mod cause;
+mod doubt;
 mod grid;
 
 pub use cause::{Cause, cause};
+pub use doubt::{DOUBTS, Doubt, warnings};
 pub use grid::{Grid, Region, Regions};
 
 use super::row::JobRow;

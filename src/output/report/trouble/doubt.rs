@@ -1,0 +1,103 @@
+//! Results that are there and should be doubted: one list for the page and for the warnings of the command line.
+
+use crate::analysis::PlasticFlow;
+use crate::publish::value::{count, significant};
+use crate::report::row::JobRow;
+
+/// A reason to doubt a result.
+#[derive(Debug)]
+pub struct Doubt {
+    /// The heading of the jobs that have it.
+    pub heading: &'static str,
+    /// What is so in a job that has it, for a warning.
+    what: &'static str,
+    /// Why a job has it, with its numbers; `None` if it does not have it.
+    pub why: fn(&JobRow) -> Option<String>,
+}
+
+/// All reasons, in the order of the page.
+pub static DOUBTS: [Doubt; 4] = [
+    Doubt {
+        heading: "Accuracy not reached",
+        what: "the accuracy that is asked for is not reached, also on the finest mesh",
+        why: not_accurate,
+    },
+    Doubt {
+        heading: "Still yielding",
+        what: "the material goes on yielding within the averaging window (column plastic_share)",
+        why: yields,
+    },
+    Doubt {
+        heading: "Balances do not close",
+        what: "a balance does not close within 1 % (columns energy_residual and identity_residual): do not use the means",
+        why: does_not_close,
+    },
+    Doubt {
+        heading: "The pin hops",
+        what: "the pin hops: its normal force reaches more than ten times the load (column n_over_f_max)",
+        why: hops,
+    },
+];
+
+/// A warning for each reason that some jobs have.
+pub fn warnings(rows: &[JobRow]) -> Vec<String> {
+    let warning = |doubt: &Doubt| {
+        let jobs = rows.iter().filter(|row| (doubt.why)(row).is_some()).count();
+        (jobs > 0).then(|| format!("in {} {}", count(jobs, "job"), doubt.what))
+    };
+    DOUBTS.iter().filter_map(warning).collect()
+}
+
+fn not_accurate(row: &JobRow) -> Option<String> {
+    let record = row.record().filter(|record| record.accuracy_reached == Some(false))?;
+    Some(match record.mesh_error() {
+        Ok(_) if record.start.is_none() => "there is no coarser mesh to compare with".to_owned(),
+        Ok(own) => format!(
+            "the error of μ* may be {}, {} % of it",
+            significant(own.mu_star, 2),
+            significant(100.0 * own.mu_star / record.mu_star.abs(), 2)
+        ),
+        Err(why) => format!("the error of μ* is unknown: {}", why.reason()),
+    })
+}
+
+fn yields(row: &JobRow) -> Option<String> {
+    let flow = row.record()?.plastic.filter(PlasticFlow::is_yielding)?;
+    Some(format!(
+        "the plastic work is {} % of the sum of it and the work of friction in the window, and the shape of the pin may go on changing; the \
+         largest plastic strain is {}",
+        significant(100.0 * flow.share, 2),
+        significant(flow.strain_max, 2)
+    ))
+}
+
+/// The largest residual with which the means of a job can be used. Those of `figure7` are a tenth of it.
+const LARGEST_RESIDUAL: f64 = 0.01;
+
+fn does_not_close(row: &JobRow) -> Option<String> {
+    let record = row.record()?;
+    let residuals = [
+        ("energies of the run", record.energy_residual.abs()),
+        ("identities of the window", record.identity_residual()),
+    ];
+    let open: Vec<String> = residuals
+        .into_iter()
+        .filter(|(_, residual)| *residual > LARGEST_RESIDUAL)
+        .map(|(of, residual)| format!("the {of} have a residual of {}", significant(residual, 2)))
+        .collect();
+    (!open.is_empty()).then(|| open.join(", and "))
+}
+
+/// The largest normal force over the load of a contact that slides, sticks and separates. In `figure7` it is 3; where the whole pin flies and
+/// lands, some 100.
+const LARGEST_FORCE: f64 = 10.0;
+
+fn hops(row: &JobRow) -> Option<String> {
+    let record = row.record().filter(|record| record.n_over_f_max > LARGEST_FORCE)?;
+    Some(format!(
+        "the normal force reaches {} times the load, and the nodes of the base are apart from the disk for {} % of the time on average: the \
+         whole pin flies and lands, and the frequency is that of the landings",
+        significant(record.n_over_f_max, 3),
+        significant(100.0 * record.separated_share, 2)
+    ))
+}
