@@ -200,6 +200,10 @@ fn validate_writes_no_file() {
     assert!(printed.starts_with("mine.json: valid, 6 jobs ("), "{printed}");
     assert!(printed.contains("mu 3") && printed.contains("omega_rpm 2"), "{printed}");
     assert_eq!(folder.files(), ["mine.json"]);
+    // Who reads this line alone sees that there are warnings.
+    let doubtful = folder.ok("validate mine.json --set mu=[2,3,4]");
+    assert!(doubtful.lines().next().is_some_and(|line| line.ends_with(", 1 warning")), "{doubtful}");
+    assert!(!printed.lines().next().is_some_and(|line| line.contains("warning")), "{printed}");
 }
 
 /// Every shipped study.

@@ -31,7 +31,7 @@ pub(crate) struct Args {
 /// Checks the study, the database and the folder of the report, and prints what the jobs take. Creates nothing.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let plan = args.study.plan()?;
-    warnings::of_study(plan.study());
+    let doubts = warnings::of_study(plan.study());
     report::check_folder(plan.name(), &args.out)?;
     let (forecast, replaced) = forecast::read(&plan, args.threads.number(), db)?;
     forecast::warn(&forecast);
@@ -45,8 +45,10 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         let file = args.study.file.display();
         // A changed study may have another name than the file says.
         let name = if args.study.is_changed() { format!(" as {}", plan.name()) } else { String::new() };
+        // Warnings are on another stream than this line.
+        let doubts = if doubts > 0 { format!(", {}", count(doubts, "warning")) } else { String::new() };
         format!(
-            "{file}{name}: valid, {}{grid}\n{}{}",
+            "{file}{name}: valid, {}{grid}{doubts}\n{}{}",
             count(forecast.jobs, "job"),
             forecast::as_text(&forecast, db),
             forecast::growth(&plan)

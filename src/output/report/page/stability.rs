@@ -4,7 +4,9 @@ use crate::publish::page::{Block, Figure, Grid, MOST_DATA, Section, limited};
 use crate::publish::value;
 use crate::report::figure::stability::StabilityPlot;
 use crate::report::layout::{Group, MAX_GROUPS, MAX_SHEETS};
-use crate::report::stability::{Analysis, Files, GroupModes, ShownModes, Speed, unknown_errors};
+use crate::report::stability::{
+    Analysis, Files, GroupModes, ShownModes, Speed, above_band, on_edge, unknown_errors,
+};
 
 /// What the section is about.
 const MEANING: [&str; 3] = [
@@ -67,7 +69,8 @@ pub(super) fn section(analysis: &Analysis, files: &Files) -> Section {
     let mut blocks: Vec<Block> = Vec::new();
     let further = [
         analysis.along_in_words(),
-        analysis.above_band(),
+        above_band(analysis.points()),
+        on_edge(analysis.points()),
         not_converged(analysis),
         unknown_errors(analysis.points(), ShownModes::ALL),
     ];

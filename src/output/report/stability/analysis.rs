@@ -18,9 +18,6 @@ use serde_json::Value;
 /// The largest number of further modes that a note names.
 const MOST_NAMED: usize = 3;
 
-/// The highest frequency that people hear.
-const HEARD_HZ: f64 = 20_000.0;
-
 /// The points as rows, so that a [`Layout`] can group them. The key of a row is the number of its point. Parameters that move along
 /// the way of the thresholds do not tell groups apart: the rows do not say them.
 pub(in crate::report) fn rows(points: &[StabilityPoint], along: &Along) -> Vec<JobRow> {
@@ -187,32 +184,6 @@ impl<'a> Analysis<'a> {
         words.join("; ")
     }
 
-    /// What is known above the frequencies up to which modes were looked for, in a sentence; none if nothing can grow there at any
-    /// point.
-    pub fn above_band(&self) -> Option<String> {
-        let open = self.points.iter().filter(|point| !point.stability.above_band.is_known());
-        let bands: Vec<f64> = open.map(|point| point.stability.band_hz).collect();
-        let (low, high) =
-            bands.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &hz| (low.min(hz), high.max(hz)));
-        let words = |hz: f64| value::quantity(hz, "Hz");
-        let band = if words(low) == words(high) {
-            words(low)
-        } else {
-            format!("{} (for some points {})", words(low), words(high))
-        };
-        (!bands.is_empty()).then(|| {
-            let points = if bands.len() == self.points.len() {
-                String::new()
-            } else {
-                format!(" at {} of {}", bands.len(), value::count(self.points.len() as u32, "point"))
-            };
-            let heard = if low > HEARD_HZ { ", beyond hearing," } else { "" };
-            format!(
-                "Above {band}{heard} no modes were looked for{points}: a mode may grow there. Below it, all modes were looked for."
-            )
-        })
-    }
-
     /// Which parameter the thresholds belong to, in a sentence, if it is not μ alone.
     pub fn along_in_words(&self) -> Option<String> {
         let Along { parameter, with } = self.along;
@@ -329,17 +300,6 @@ mod tests {
         assert_eq!(group.speeds[1].onsets[0].frequency_hz, 20_100.0);
         let ranges: Vec<String> = group.speeds.iter().map(|speed| speed.intervals_in_words("")).collect();
         assert_eq!(ranges, ["≤ 0.1 to ≥ 0.3", "0.2 to ≥ 0.3", "none", value::MISSING]);
-        let all = "Above 50 kHz, beyond hearing, no modes were looked for: a mode may grow there. Below it, all modes were looked for.";
-        assert_eq!(found.above_band().as_deref(), Some(all));
-        let mut others = points.clone();
-        others[0].stability.band_hz = 5.5e4;
-        let bands = Analysis::of(&others, &rows, &along, &View::DEFAULT).above_band().unwrap();
-        assert!(
-            bands.starts_with(
-                "Above 50 kHz (for some points 55 kHz), beyond hearing, no modes were looked for: "
-            ),
-            "{bands}"
-        );
         assert_eq!(found.along_in_words(), None);
     }
 

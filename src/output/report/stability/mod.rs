@@ -8,6 +8,7 @@
 
 mod along;
 mod analysis;
+mod caveats;
 mod contour;
 mod onsets;
 mod ranges;
@@ -17,6 +18,7 @@ mod write;
 
 pub use along::Along;
 pub(super) use analysis::{Analysis, GroupModes, rows};
+pub(super) use caveats::{above_band, on_edge};
 pub(super) use contour::{Node, zero_line};
 pub(super) use ranges::{Onset, Speed};
 pub(super) use table::described;

@@ -2,6 +2,7 @@
 
 use super::along::Along;
 use super::analysis::{Analysis, MOVES, rows};
+use super::caveats::{above_band, on_edge};
 use super::ranges::{Known, Onset, Speed};
 use crate::analysis::ComplexMode;
 use crate::publish::table::{Column, FileColumns, Head, Table};
@@ -189,7 +190,8 @@ pub fn thresholds_table(points: &[StabilityPoint], along: &Along) -> (Table, Vec
     });
     let own = [along.threshold()].into_iter().chain(["unstable", "frequency", "note"].map(str::to_owned));
     let heads = place_heads(&analysis).chain(own.map(|name| Head::new(name, "", ""))).collect();
-    let notes = analysis.along_in_words().into_iter().chain(analysis.above_band()).collect();
+    let notes =
+        [analysis.along_in_words(), above_band(points), on_edge(points)].into_iter().flatten().collect();
     (Table { stem: "thresholds".into(), heads, lines }, notes)
 }
 
