@@ -293,7 +293,11 @@ fn the_damping_is_named_with_all_its_parts() {
         JobRow { numerics, ..row(7.0, 0.4, RowState::Done(record)) }
     };
     for (beta2, beta_r_s, sentence) in [
-        (0.5, 2.75e-8, "Damping: β_R = 27.5 ns, that of β₂ = 1 at Δt = 55 ns."),
+        (
+            0.5,
+            2.75e-8,
+            "Damping: β_R = 27.5 ns, that of β₂ = 1 at Δt = 55 ns. At the frequency of the limit cycles the loss factor is 0.0025.",
+        ),
         (1.0, 0.0, "Damping: that of the time scheme, which is β_R = 50 ns."),
         (1.0, 2.0e-8, "Damping: β_R = 20 ns of the material and 50 ns of the time scheme, 70 ns in all."),
         (0.5, 0.0, "The pin has no damping."),

@@ -7,7 +7,7 @@ use crate::publish::table::{Column, Table};
 use crate::publish::value::{count, quantity, significant};
 use crate::queue::{Clock, Location, Queue, Replaced};
 use crate::spec::Precision;
-use crate::sweep::{self, Forecast, Group, Plan, TimeRange};
+use crate::sweep::{self, Forecast, Group, OtherClamps, Plan, TimeRange};
 use crate::worker::Eta;
 use serde_json::{Value, json};
 use std::time::Duration;
@@ -189,6 +189,16 @@ pub(crate) fn warn(forecast: &Forecast) {
         log(format_args!(
             "warning: the jobs need {}; take fewer threads or a coarser mesh, or run them on another machine",
             memory(forecast)
+        ));
+    }
+    if let Some(OtherClamps { jobs, width_m, coarser_width_m, elements }) = &forecast.other_clamps {
+        let [own, coarser] = [width_m, coarser_width_m].map(|x| quantity(*x, "m"));
+        let better = elements.map_or_else(String::new, |(number, axis)| {
+            format!("; with {number} elements in {axis} both meshes have the same")
+        });
+        log(format_args!(
+            "warning: the mesh error of {} stays unknown: the clamp is {own} wide on the mesh, and {coarser} on the coarser one{better}",
+            count(*jobs, "job")
         ));
     }
 }

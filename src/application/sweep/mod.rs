@@ -53,7 +53,7 @@ pub use deep::{examine_deeply, unreadable_jobs};
 pub use difference::{Difference, InputDifference};
 pub use error::SweepError;
 pub use export::{ExportColumns, Unreadable, columns, export, export_windows};
-pub use forecast::{Forecast, Group, Known, Speed, TimeRange, expected_s_per_cost};
+pub use forecast::{Forecast, Group, Known, OtherClamps, Speed, TimeRange, expected_s_per_cost};
 pub use growth::{PLANNER, read_growth, read_implausibility};
 pub use history::History;
 #[cfg(feature = "cli")]

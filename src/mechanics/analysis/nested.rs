@@ -128,6 +128,14 @@ pub fn earliest_end(spec: &JobSpec) -> Option<JobSpec> {
     Some(earliest_end(&coarse).unwrap_or(coarse))
 }
 
+/// The widths of the clamp \[m\] on the job's mesh and on the coarser one, if they differ: then the mesh error stays unknown.
+pub fn clamps_that_differ(spec: &JobSpec) -> Option<[f64; 2]> {
+    let coarse = coarser(spec)?;
+    let width_m = |spec: &JobSpec| Model::clamp_width_on_mesh_m(&spec.scene).ok();
+    let (own_m, coarse_m) = width_m(spec).zip(width_m(&coarse))?;
+    (!is_same_width(coarse_m, own_m)).then_some([own_m, coarse_m])
+}
+
 /// Whether two widths of the clamp are the same but for rounding.
 pub(super) fn is_same_width(a_m: f64, b_m: f64) -> bool {
     (a_m - b_m).abs() <= 1.0e-9 * b_m

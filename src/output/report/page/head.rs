@@ -13,6 +13,7 @@ use crate::report::row::JobRow;
 use crate::report::scalar::{FREQUENCY, MU_STAR};
 use crate::report::summary::{self, Summary};
 use crate::report::tooltip::residual_text;
+use std::f64::consts::PI;
 
 /// What comes before the links to sections.
 pub(super) fn lead(parts: &Parts) -> Vec<Block> {
@@ -89,16 +90,18 @@ fn friction(rows: &[&JobRow]) -> Option<String> {
     Some(format!("μ* falls furthest below μ at {place}: to {mu_star}, {percent} % of μ."))
 }
 
-/// The frequencies of limit cycles \[kHz\]; none if there are no limit cycles.
-fn range_khz(rows: &[&JobRow]) -> Option<String> {
+/// The lowest and the highest frequency of limit cycles \[Hz\]; none if there are no limit cycles.
+fn range_hz(rows: &[&JobRow]) -> Option<[f64; 2]> {
     // The mean rate of a run that is not periodic is no frequency of a limit cycle.
     let settled = rows.iter().filter(|row| !row.is_measured() && FREQUENCY.is_settled(row));
     let found = settled.filter_map(|row| FREQUENCY.value(row));
-    let (low, high) =
-        found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), f| (low.min(f), high.max(f)));
-    let [low_khz, high_khz] = [low, high].map(|f| value::fixed(f / 1e3, 1));
-    let range = if low_khz == high_khz { low_khz } else { format!("{low_khz}–{high_khz}") };
-    (low <= high).then(|| format!("{range} kHz"))
+    found.map(|hz| [hz, hz]).reduce(|[low, high], [hz, _]| [low.min(hz), high.max(hz)])
+}
+
+/// [`range_hz`] in words.
+fn range_khz(rows: &[&JobRow]) -> Option<String> {
+    let [low, high] = range_hz(rows)?.map(|hz| value::fixed(hz / 1e3, 1));
+    Some(if low == high { format!("{low} kHz") } else { format!("{low}–{high} kHz") })
 }
 
 fn frequencies(rows: &[&JobRow]) -> Option<String> {
@@ -123,15 +126,34 @@ fn damping(rows: &[&JobRow]) -> Option<String> {
     let mut all = rows.iter().filter(oscillates).map(own);
     let first = all.next()??;
     let (beta_r_s, of_scheme_s, alpha) = Some(first).filter(|_| all.all(|other| other == Some(first)))?;
+    let words = damping_in_words(beta_r_s, of_scheme_s, alpha);
+    // Twice the damping ratio. A study may give it at a frequency at which nothing squeals.
+    let loss_factor = |hz: f64| {
+        let omega = 2.0 * PI * hz;
+        value::significant(alpha / omega + (beta_r_s + of_scheme_s) * omega, 2)
+    };
+    let is_damped = (beta_r_s, of_scheme_s, alpha) != (0.0, 0.0, 0.0);
+    Some(match range_hz(rows).filter(|_| is_damped).map(|range| range.map(loss_factor)) {
+        Some([low, high]) if low == high => {
+            format!("{words} At the frequency of the limit cycles the loss factor is {low}.")
+        }
+        Some([low, high]) => {
+            format!("{words} At the frequencies of the limit cycles the loss factor is {low} to {high}.")
+        }
+        None => words,
+    })
+}
+
+fn damping_in_words(beta_r_s: f64, of_scheme_s: f64, alpha: f64) -> String {
     if alpha > 0.0 {
         let alpha = value::significant(alpha, 4);
-        return Some(format!(
+        return format!(
             "Damping: α_R = {alpha} 1/s in proportion to the mass, and β_R = {} in proportion to the stiffness.",
             value::quantity(beta_r_s + of_scheme_s, "s")
-        ));
+        );
     }
     let seconds = |x: f64| value::quantity(x, "s");
-    Some(match (beta_r_s, of_scheme_s) {
+    match (beta_r_s, of_scheme_s) {
         (0.0, 0.0) => "The pin has no damping.".to_owned(),
         (_, 0.0) => {
             format!(
@@ -147,7 +169,7 @@ fn damping(rows: &[&JobRow]) -> Option<String> {
             seconds(of_scheme_s),
             seconds(beta_r_s + of_scheme_s)
         ),
-    })
+    }
 }
 
 fn not_solved(rows: &[&JobRow]) -> Option<String> {
