@@ -183,24 +183,36 @@ fn bytes(size: f64) -> String {
     if size < 10.0 { format!("{} {unit}", significant(size, 2)) } else { format!("{size:.0} {unit}") }
 }
 
-/// Warns if the jobs need more memory than this machine has.
-pub(crate) fn warn(forecast: &Forecast) {
-    if forecast.exceeds_memory() {
-        log(format_args!(
-            "warning: the jobs need {}; take fewer threads or a coarser mesh, or run them on another machine",
-            memory(forecast)
-        ));
+/// Warns of jobs that need more memory than this machine has, and of clamps that make mesh errors unknown. Returns the number of warnings.
+pub(crate) fn warn(forecast: &Forecast) -> usize {
+    let warnings = [
+        forecast.exceeds_memory().then(|| {
+            format!(
+                "the jobs need {}; take fewer threads or a coarser mesh, or run them on another machine",
+                memory(forecast)
+            )
+        }),
+        forecast.other_clamps.as_ref().map(clamps_in_words),
+    ];
+    for warning in warnings.iter().flatten() {
+        log(format_args!("warning: {warning}"));
     }
-    if let Some(OtherClamps { jobs, width_m, coarser_width_m, elements }) = &forecast.other_clamps {
-        let [own, coarser] = [width_m, coarser_width_m].map(|x| quantity(*x, "m"));
-        let better = elements.map_or_else(String::new, |(number, axis)| {
-            format!("; with {number} elements in {axis} both meshes have the same")
-        });
-        log(format_args!(
-            "warning: the mesh error of {} stays unknown: the clamp is {own} wide on the mesh, and {coarser} on the coarser one{better}",
-            count(*jobs, "job")
-        ));
-    }
+    warnings.iter().flatten().count()
+}
+
+fn clamps_in_words(OtherClamps { jobs, width_m, coarser_width_m, elements }: &OtherClamps) -> String {
+    let coarser = coarser_width_m.map_or_else(
+        || "no coarser mesh fits it".to_owned(),
+        |width_m| format!("{} on the coarser one", quantity(width_m, "m")),
+    );
+    let better = elements.map_or_else(String::new, |(number, axis)| {
+        format!("; {number} elements in {axis} have the same clamp on both")
+    });
+    format!(
+        "the mesh error of limit cycles stays unknown in {}: the clamp is {} wide on the mesh, and {coarser}{better}",
+        count(*jobs, "job"),
+        quantity(*width_m, "m")
+    )
 }
 
 /// Says before the work how long it takes, unless it is short.

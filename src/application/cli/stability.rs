@@ -15,7 +15,8 @@ use crate::publish::table::Format;
 use crate::publish::value::significant;
 use crate::queue::{Location, Shard};
 use crate::report::{
-    Along, SHAPES, STABILITY_PAGE, ShownModes, StabilityPoint, modes_table, thresholds_table, unknown_errors,
+    Along, MODE_NUMBER, SHAPES, STABILITY_PAGE, ShownModes, StabilityPoint, modes_table, thresholds_table,
+    unknown_errors,
 };
 use crate::study::number_in;
 use crate::sweep::Plan;
@@ -24,8 +25,11 @@ use crate::sweep::{
 };
 use std::path::PathBuf;
 
-/// Significant digits of numbers on a terminal. Without a mesh error fewer would be known; `modes.csv` has all digits.
+/// Significant digits of modes on a terminal. Without a mesh error fewer would be known; `modes.csv` has all digits.
 const DIGITS: usize = 4;
+
+/// Significant digits of thresholds and of the parameters beside them.
+const PLACE_DIGITS: usize = 6;
 
 /// Arguments of `stability`.
 #[derive(Debug, clap::Args)]
@@ -98,7 +102,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         if args.json {
             stream(|out| Ok(table.write(Format::JsonLines, out)?))?;
         } else {
-            let (table, constant) = table.rounded(DIGITS).without_constants();
+            let parameters = table.names().position(|name| name == MODE_NUMBER).unwrap_or(0);
+            let (table, constant) = table.rounded_from(parameters, DIGITS).without_constants();
             print(&table.text())?;
             if !constant.is_empty() {
                 print(&format!("In all lines: {}.\n", constant.join(", ")))?;
@@ -108,7 +113,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             }
             if wanted.is_some() && !points.is_empty() {
                 let (table, notes) = thresholds_table(&points, &shown);
-                print(&format!("\nThresholds\n{}", table.rounded(DIGITS).text()))?;
+                print(&format!("\nThresholds\n{}", table.rounded(PLACE_DIGITS).text()))?;
                 for note in &notes {
                     print(&format!("{note}\n"))?;
                 }

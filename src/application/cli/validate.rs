@@ -31,10 +31,10 @@ pub(crate) struct Args {
 /// Checks the study, the database and the folder of the report, and prints what the jobs take. Creates nothing.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let plan = args.study.plan()?;
-    let doubts = warnings::of_study(plan.study());
+    let mut doubts = warnings::of_study(plan.study());
     report::check_folder(plan.name(), &args.out)?;
     let (forecast, replaced) = forecast::read(&plan, args.threads.number(), db)?;
-    forecast::warn(&forecast);
+    doubts += forecast::warn(&forecast);
     let samples = plan.study().samples().map(|samples| format!("samples {samples}"));
     let axes = plan.study().axes().map(|(parameter, values)| format!("{} {}", parameter.name, values.len()));
     let axes: Vec<String> = samples.into_iter().chain(axes).collect();

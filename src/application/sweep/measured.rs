@@ -2,6 +2,7 @@
 
 use super::measured_columns::{Column, SQUEALS, columns};
 use super::threshold::Threshold;
+use crate::publish::value::significant;
 use crate::report::{FREQUENCY, JobRow, MeasuredValue, Measurement, Parameters, RowState};
 use crate::study::read_text;
 use csv::{ReaderBuilder, StringRecord, Trim};
@@ -137,7 +138,9 @@ pub(super) fn parse(text: &str, file: &str, source_name: &str) -> Result<Measure
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
         format!("{columns} {names}{more} {are} no parameter and no result")
     });
+    // One point can belong to the only job of a study.
     if let Some(named) = &named
+        && rows.len() > 1
         && !columns.iter().any(|column| matches!(column, Column::Parameter(_)))
     {
         let message =
@@ -155,8 +158,7 @@ pub(super) fn parse(text: &str, file: &str, source_name: &str) -> Result<Measure
     Ok(MeasuredFile { parameters: parameters.collect(), rows, warnings, has_thresholds })
 }
 
-/// Frequencies of squeal below this one \[Hz\] are probably in kHz: a person hears vibrations from 20 Hz on, and an ultrasonic one of 90 kHz is
-/// above it, too.
+/// Nobody hears a squeal below this frequency \[Hz\], and none is above as many kHz.
 const LOW_HZ: f64 = 100.0;
 
 /// A warning if all frequencies look like kHz.
@@ -166,7 +168,7 @@ fn low_frequencies(file: &str, rows: &[JobRow]) -> Option<String> {
     Some(format!(
         "{file}: column {} has no frequency above {largest_hz} Hz; if they are in kHz, write {} instead of {largest_hz}",
         FREQUENCY.name,
-        1000.0 * largest_hz
+        significant(1000.0 * largest_hz, 6)
     ))
 }
 
@@ -375,8 +377,9 @@ mod tests {
         assert_eq!(found.warnings, [left_out]);
         let found = parse("omega_rpm,mu_star,note\n7,0.3,first\n", "points.csv", "points").unwrap();
         assert!(found.warnings.is_empty(), "{found:?}");
-        // Without a parameter, no point belongs to a job.
-        let refused = refusal("# day 1\nomega_rads,mu_star\n7,0.3\n");
+        // Several points without a parameter belong to no job.
+        assert_eq!(parse("Bemerkung,mu_star\nx,0.3\n", "points.csv", "points").unwrap().rows.len(), 1);
+        let refused = refusal("# day 1\nomega_rads,mu_star\n7,0.3\n8,0.3\n");
         assert!(
             refused.starts_with(
                 "points.csv:2: column `omega_rads` is no parameter and no result; expected a column with"

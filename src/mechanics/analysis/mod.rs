@@ -62,7 +62,7 @@ pub use job::{JobObserver, Unobserved, on_final_mesh, solve};
 pub use lanes::Moment;
 pub use mesh_error::{MeshError, UnknownError};
 pub use mode::ComplexMode;
-pub use nested::{CoarseStart, clamps_that_differ, earliest_end};
+pub use nested::{ClampWidths, CoarseStart, earliest_end};
 pub use noted::Noted;
 pub use record::{
     ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, PlasticFlow, Regime,

@@ -128,12 +128,29 @@ pub fn earliest_end(spec: &JobSpec) -> Option<JobSpec> {
     Some(earliest_end(&coarse).unwrap_or(coarse))
 }
 
-/// The widths of the clamp \[m\] on the job's mesh and on the coarser one, if they differ: then the mesh error stays unknown.
-pub fn clamps_that_differ(spec: &JobSpec) -> Option<[f64; 2]> {
-    let coarse = coarser(spec)?;
-    let width_m = |spec: &JobSpec| Model::clamp_width_on_mesh_m(&spec.scene).ok();
-    let (own_m, coarse_m) = width_m(spec).zip(width_m(&coarse))?;
-    (!is_same_width(coarse_m, own_m)).then_some([own_m, coarse_m])
+/// The clamp on the mesh of a job and on the coarser one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClampWidths {
+    /// Its width on the mesh of the job \[m\].
+    pub own_m: f64,
+    /// Its width on the coarser mesh \[m\]; `None` if no coarser mesh fits.
+    pub coarser_m: Option<f64>,
+}
+
+impl ClampWidths {
+    /// Those of a job; `None` if it does not run on a coarser mesh first.
+    pub fn of(spec: &JobSpec) -> Option<Self> {
+        if spec.coarser_elements().is_empty() {
+            return None;
+        }
+        let width_m = |spec: &JobSpec| Model::clamp_width_on_mesh_m(&spec.scene).ok();
+        Some(Self { own_m: width_m(spec)?, coarser_m: coarser(spec).and_then(|coarse| width_m(&coarse)) })
+    }
+
+    /// Whether they differ: then the two meshes say nothing of each other.
+    pub fn differ(self) -> bool {
+        self.coarser_m.is_none_or(|coarser_m| !is_same_width(coarser_m, self.own_m))
+    }
 }
 
 /// Whether two widths of the clamp are the same but for rounding.

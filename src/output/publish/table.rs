@@ -193,15 +193,22 @@ impl Table {
 
     /// With at most so many significant digits in its numbers, for a reader.
     #[must_use]
-    pub fn rounded(mut self, digits: usize) -> Self {
-        for cell in self.lines.iter_mut().flatten().filter(|cell| cell.is_f64()) {
+    pub fn rounded(self, digits: usize) -> Self {
+        self.rounded_from(0, digits)
+    }
+
+    /// The same without the first columns, which keep their digits: parameters are what somebody has chosen.
+    #[must_use]
+    pub fn rounded_from(mut self, first: usize, digits: usize) -> Self {
+        let cells = self.lines.iter_mut().flat_map(|line| line.iter_mut().skip(first));
+        for cell in cells.filter(|cell| cell.is_f64()) {
             *cell = cell.as_f64().map_or(Value::Null, |x| value::significant_number(x, digits));
         }
         self
     }
 
-    /// The table without the columns that have one value in all lines, and each of these with its value, for a terminal that is not wide. A table
-    /// of one line keeps all columns.
+    /// The table without the columns that have one value in all lines, and each of these with its value if it has one, for a terminal that is not
+    /// wide. A table of one line keeps all columns.
     #[must_use]
     pub fn without_constants(mut self) -> (Self, Vec<String>) {
         let cells = self.cells();
@@ -210,7 +217,8 @@ impl Table {
             .map(|column| !others.is_empty() && others.iter().all(|line| line[column] == first[column]))
             .collect();
         let constant = self.names().zip(first).zip(&is_constant).filter(|(_, constant)| **constant);
-        let named = constant.map(|((name, cell), _)| format!("{name} {cell}")).collect();
+        let known = constant.filter(|((_, cell), _)| *cell != value::MISSING);
+        let named = known.map(|((name, cell), _)| format!("{name} {cell}")).collect();
         let heads = self.heads.into_iter().zip(&is_constant).filter(|(_, constant)| !**constant);
         self.heads = heads.map(|(head, _)| head).collect();
         for line in &mut self.lines {
@@ -419,7 +427,6 @@ mod tests {
         Table::of("modes", &COLUMNS, &modes)
     }
 
-    /// Protects: header and cells come from the same columns in every format, texts are quoted, a number reads back as the same
     /// Protects: a column that says the same in all lines is said once, and every cell of the others stays in its column. One line is no
     /// comparison.
     #[test]
@@ -432,11 +439,12 @@ mod tests {
         let (varying, constant) = table.clone().without_constants();
         assert_eq!(varying.names().collect::<Vec<_>>(), ["b", "d"]);
         assert_eq!(varying.cells(), [["1", "yes"], ["2", "no"], ["3", "yes"]]);
-        assert_eq!(constant, ["a 1", "c –"]);
+        assert_eq!(constant, ["a 1"]);
         let one = Table { lines: table.lines[..1].to_vec(), ..table };
         assert_eq!(one.clone().without_constants(), (one, Vec::new()));
     }
 
+    /// Protects: header and cells come from the same columns in every format, texts are quoted, a number reads back as the same
     /// number, and a value that is missing is an empty cell or null.
     #[test]
     fn formats_have_the_same_cells() {

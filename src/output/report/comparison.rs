@@ -404,7 +404,7 @@ impl Matches {
     fn some_in_words(&self, source: &str, reference: &str) -> Option<String> {
         (self.elsewhere > 0).then(|| {
             format!(
-                "{} of the {} points of {source} {} compared with nothing: no job of {reference} is at their parameters, or on both sides of \
+                "{} of the {} points of {source} {} compared with nothing: no finished job of {reference} is at their parameters, or on both sides of \
                  them",
                 self.elsewhere,
                 self.equal + self.between + self.elsewhere,

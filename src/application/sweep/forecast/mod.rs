@@ -54,7 +54,7 @@ pub struct Forecast {
     pub memory_here_bytes: Option<u64>,
     /// Disk space \[byte\] that the database grows by.
     pub results_bytes: f64,
-    /// The jobs whose mesh error stays unknown because of their clamp; `None` if there are none.
+    /// The jobs that are left and whose mesh error stays unknown because of their clamp; `None` if there are none.
     pub other_clamps: Option<OtherClamps>,
     /// Disk space \[byte\] of the states of running jobs, if they run so long that they are stored; otherwise 0.
     pub checkpoints_bytes: f64,
@@ -178,7 +178,7 @@ impl Forecast {
             checkpoints_bytes: if is_long { checkpoints_bytes } else { 0.0 },
             memory_bytes: PROCESS_BYTES + memory_bytes,
             memory_here_bytes: memory_here_bytes(),
-            other_clamps: OtherClamps::of(plan.jobs()),
+            other_clamps: OtherClamps::of(plan.jobs().iter().filter(|job| is_left(job))),
             groups,
             threads,
             time,

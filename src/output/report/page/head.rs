@@ -90,17 +90,20 @@ fn friction(rows: &[&JobRow]) -> Option<String> {
     Some(format!("μ* falls furthest below μ at {place}: to {mu_star}, {percent} % of μ."))
 }
 
-/// The lowest and the highest frequency of limit cycles \[Hz\]; none if there are no limit cycles.
-fn range_hz(rows: &[&JobRow]) -> Option<[f64; 2]> {
-    // The mean rate of a run that is not periodic is no frequency of a limit cycle.
+/// The frequencies of limit cycles \[Hz\]. The mean rate of a run that is not periodic is none.
+fn frequencies_hz(rows: &[&JobRow]) -> impl Iterator<Item = f64> {
     let settled = rows.iter().filter(|row| !row.is_measured() && FREQUENCY.is_settled(row));
-    let found = settled.filter_map(|row| FREQUENCY.value(row));
-    found.map(|hz| [hz, hz]).reduce(|[low, high], [hz, _]| [low.min(hz), high.max(hz)])
+    settled.filter_map(|row| FREQUENCY.value(row))
 }
 
-/// [`range_hz`] in words.
+/// The smallest and the largest number; none if there are no numbers.
+fn range_of(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    numbers.map(|x| [x, x]).reduce(|[low, high], [x, _]| [low.min(x), high.max(x)])
+}
+
+/// The range of the frequencies of limit cycles in words; none if there are no limit cycles.
 fn range_khz(rows: &[&JobRow]) -> Option<String> {
-    let [low, high] = range_hz(rows)?.map(|hz| value::fixed(hz / 1e3, 1));
+    let [low, high] = range_of(frequencies_hz(rows))?.map(|hz| value::fixed(hz / 1e3, 1));
     Some(if low == high { format!("{low} kHz") } else { format!("{low}–{high} kHz") })
 }
 
@@ -130,12 +133,13 @@ fn damping(rows: &[&JobRow]) -> Option<String> {
     // Twice the damping ratio. A study may give it at a frequency at which nothing squeals.
     let loss_factor = |hz: f64| {
         let omega = 2.0 * PI * hz;
-        value::significant(alpha / omega + (beta_r_s + of_scheme_s) * omega, 2)
+        alpha / omega + (beta_r_s + of_scheme_s) * omega
     };
     let is_damped = (beta_r_s, of_scheme_s, alpha) != (0.0, 0.0, 0.0);
-    Some(match range_hz(rows).filter(|_| is_damped).map(|range| range.map(loss_factor)) {
+    let factors = range_of(frequencies_hz(rows).map(loss_factor)).filter(|_| is_damped);
+    Some(match factors.map(|range| range.map(|factor| value::significant(factor, 2))) {
         Some([low, high]) if low == high => {
-            format!("{words} At the frequency of the limit cycles the loss factor is {low}.")
+            format!("{words} At the frequencies of the limit cycles the loss factor is {low}.")
         }
         Some([low, high]) => {
             format!("{words} At the frequencies of the limit cycles the loss factor is {low} to {high}.")

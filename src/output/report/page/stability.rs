@@ -5,7 +5,7 @@ use crate::publish::value;
 use crate::report::figure::stability::StabilityPlot;
 use crate::report::layout::{Group, MAX_GROUPS, MAX_SHEETS};
 use crate::report::stability::{
-    Analysis, Files, GroupModes, ShownModes, Speed, above_band, on_edge, unknown_errors,
+    Analysis, Files, GroupModes, ShownModes, Speed, above_band, small_contact, unknown_errors,
 };
 
 /// What the section is about.
@@ -70,7 +70,7 @@ pub(super) fn section(analysis: &Analysis, files: &Files) -> Section {
     let further = [
         analysis.along_in_words(),
         above_band(analysis.points()),
-        on_edge(analysis.points()),
+        small_contact(analysis.points()),
         not_converged(analysis),
         unknown_errors(analysis.points(), ShownModes::ALL),
     ];

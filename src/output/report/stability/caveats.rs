@@ -25,21 +25,21 @@ pub(in crate::report) fn above_band(points: &[StabilityPoint]) -> Option<String>
         } else {
             format!(" at {} of {}", bands.len(), value::count(points.len() as u32, "point"))
         };
-        let heard = if low > HEARD_HZ { ", beyond hearing," } else { "" };
+        let heard = if low >= HEARD_HZ { " (not audible)" } else { "" };
         format!(
             "Above {band}{heard} no modes were looked for{at}: a mode may grow there. Below it, all modes were looked for."
         )
     })
 }
 
-/// That most nodes of the base are lifted, in a sentence; none if at each point most of them touch.
-pub(in crate::report) fn on_edge(points: &[StabilityPoint]) -> Option<String> {
+/// That most nodes of the base do not touch the disk, in a sentence; none if at each point most of them do.
+pub(in crate::report) fn small_contact(points: &[StabilityPoint]) -> Option<String> {
     let nodes = |point: &StabilityPoint| (point.stability.lifted_nodes, point.stability.contact_nodes);
-    let on_edge = points.iter().map(nodes).filter(|(lifted, touching)| lifted > touching);
-    let (least, all) = on_edge.clone().map(|(lifted, touching)| (touching, lifted + touching)).min()?;
+    let small_contact = points.iter().map(nodes).filter(|(lifted, touching)| lifted > touching);
+    let (least, all) = small_contact.clone().map(|(lifted, touching)| (touching, lifted + touching)).min()?;
     Some(format!(
-        "At {} of {} most nodes of the base are lifted (down to {least} of {all} touch): there the edge on which the pin stands and the mesh decide.",
-        on_edge.count(),
+        "At {} of {} most nodes of the base do not touch the disk (down to {least} of {all} do): there the shape of the base and the mesh decide.",
+        small_contact.count(),
         value::count(points.len() as u32, "point")
     ))
 }
@@ -69,25 +69,24 @@ mod tests {
             let open = bands.iter().map(|&band_hz| point(band_hz, AboveBand::NotLookedAt, 9, 0));
             above_band(&open.collect::<Vec<_>>()).unwrap()
         };
-        let all = "Above 50 kHz, beyond hearing, no modes were looked for: a mode may grow there. Below it, all modes were looked for.";
+        let all = "Above 50 kHz (not audible) no modes were looked for: a mode may grow there. Below it, all modes were looked for.";
         assert_eq!(of(&[5.0e4, 5.0e4]), all);
-        assert_eq!(of(&[1.0e4]), all.replace("50 kHz, beyond hearing,", "10 kHz"));
+        assert_eq!(of(&[1.0e4]), all.replace("50 kHz (not audible)", "10 kHz"));
         let two = of(&[5.0e4, 5.5e4]);
-        assert!(two.starts_with("Above 50 kHz (for some points 55 kHz), beyond hearing, no modes"), "{two}");
+        assert!(two.starts_with("Above 50 kHz (for some points 55 kHz) (not audible) no modes"), "{two}");
         let known = point(5.0e4, AboveBand::Damped, 9, 0);
         let some = above_band(&[known.clone(), point(5.0e4, AboveBand::NotLookedAt, 9, 0)]).unwrap();
         assert!(some.contains("no modes were looked for at 1 of 2 points:"), "{some}");
         assert_eq!(above_band(&[known]), None);
     }
 
-    /// Protects: a pin that stands on its edge is named, with the point at which the fewest nodes touch.
+    /// Protects: a base of which few nodes touch is named, with the point at which the fewest do.
     #[test]
-    fn a_pin_on_its_edge_is_named() {
+    fn a_small_contact_is_named() {
         let point = |touching, lifted| point(5.0e4, AboveBand::Damped, touching, lifted);
-        let found = on_edge(&[point(9, 8), point(4, 12), point(3, 14)]).unwrap();
-        let expected =
-            "At 2 of 3 points most nodes of the base are lifted (down to 3 of 17 touch): there the edge";
+        let found = small_contact(&[point(9, 8), point(4, 12), point(3, 14)]).unwrap();
+        let expected = "At 2 of 3 points most nodes of the base do not touch the disk (down to 3 of 17 do)";
         assert!(found.starts_with(expected), "{found}");
-        assert_eq!(on_edge(&[point(9, 9), point(17, 0)]), None);
+        assert_eq!(small_contact(&[point(9, 9), point(17, 0)]), None);
     }
 }

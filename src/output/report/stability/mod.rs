@@ -18,11 +18,11 @@ mod write;
 
 pub use along::Along;
 pub(super) use analysis::{Analysis, GroupModes, rows};
-pub(super) use caveats::{above_band, on_edge};
+pub(super) use caveats::{above_band, small_contact};
 pub(super) use contour::{Node, zero_line};
 pub(super) use ranges::{Onset, Speed};
 pub(super) use table::described;
-pub use table::{ShownModes, modes_table, thresholds_table, unknown_errors};
+pub use table::{MODE_NUMBER, ShownModes, modes_table, thresholds_table, unknown_errors};
 pub(super) use verdict::{Verdict, Verdicts};
 pub(super) use write::{Files, write_files};
 pub use write::{PAGE, SHAPES, write_stability};

@@ -2,7 +2,7 @@
 
 use super::along::Along;
 use super::analysis::{Analysis, MOVES, rows};
-use super::caveats::{above_band, on_edge};
+use super::caveats::{above_band, small_contact};
 use super::ranges::{Known, Onset, Speed};
 use crate::analysis::ComplexMode;
 use crate::publish::table::{Column, FileColumns, Head, Table};
@@ -25,7 +25,7 @@ struct NumberedMode<'a> {
 #[rustfmt::skip]
 fn of_mode<'a>() -> [Column<NumberedMode<'a>>; 12] {
     [
-        Column::new("mode", "", "number of the mode, from 1, the fastest growing one first", |of| of.number.into()),
+        Column::new(MODE_NUMBER, "", "number of the mode, from 1, the fastest growing one first", |of| of.number.into()),
         Column::new("frequency_hz", "Hz", "its frequency", |of| of.mode.frequency_hz.into()),
         Column::new("frequency_mesh_error_hz", "Hz", "bound of the error that the mesh makes; empty if it is unknown", |of| of.mode.frequency_mesh_error_hz.into()),
         Column::new("growth_rate_per_s", "1/s", "growth rate; negative: it decays", |of| of.mode.growth_rate_per_s.into()),
@@ -39,6 +39,9 @@ fn of_mode<'a>() -> [Column<NumberedMode<'a>>; 12] {
         Column::new("above_band", "", ABOVE, |of| of.point.stability.above_band.name().into()),
     ]
 }
+
+/// The name of the first column after the parameters of a point.
+pub const MODE_NUMBER: &str = "mode";
 
 const ABOVE: &str = "what is known above band_hz: nothing is there, damped, coarser_run or not_looked_at";
 
@@ -190,8 +193,10 @@ pub fn thresholds_table(points: &[StabilityPoint], along: &Along) -> (Table, Vec
     });
     let own = [along.threshold()].into_iter().chain(["unstable", "frequency", "note"].map(str::to_owned));
     let heads = place_heads(&analysis).chain(own.map(|name| Head::new(name, "", ""))).collect();
-    let notes =
-        [analysis.along_in_words(), above_band(points), on_edge(points)].into_iter().flatten().collect();
+    let notes = [analysis.along_in_words(), above_band(points), small_contact(points)]
+        .into_iter()
+        .flatten()
+        .collect();
     (Table { stem: "thresholds".into(), heads, lines }, notes)
 }
 
