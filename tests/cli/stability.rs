@@ -218,6 +218,13 @@ fn an_interrupted_sweep_continues() {
     let after = wall_times(&folder.ok("export study-stability"));
     assert_eq!(after.len(), 48);
     assert!(before.iter().all(|(job, wall_s)| after[job] == *wall_s));
+    // Thresholds of an interrupted search are not those of a finished one.
+    let search = folder.start("stability study.json --threads 1");
+    folder.wait_for("study-stability", |counts| counts["done"] > 48);
+    search.signal("INT");
+    let (code, printed, messages) = search.end();
+    assert!(matches!(code, Some(0 | 3)), "{code:?}: {messages}");
+    assert_eq!(printed.contains("\nThresholds so far"), code == Some(3), "{printed}");
 }
 
 /// Protects: the folder of the command is a report: a page with its figures, what was analysed, where it comes from, and the

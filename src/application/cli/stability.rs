@@ -113,7 +113,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             }
             if wanted.is_some() && !points.is_empty() {
                 let (table, notes) = thresholds_table(&points, &shown);
-                print(&format!("\nThresholds\n{}", table.rounded(PLACE_DIGITS).text()))?;
+                let so_far = if code == exit::WORK_LEFT { " so far, not yet narrowed down" } else { "" };
+                print(&format!("\nThresholds{so_far}\n{}", table.rounded(PLACE_DIGITS).text()))?;
                 for note in &notes {
                     print(&format!("{note}\n"))?;
                 }
