@@ -139,8 +139,8 @@ def has_changed(part, before, now):
     factor = FACTOR.get(part)
     if factor is None:
         return before != now
-    ratios = [float(new) / float(old) for old, new in zip(before, now, strict=True)]
-    return not all(1 / factor <= ratio <= factor for ratio in ratios)
+    pairs = [sorted([float(old), float(new)]) for old, new in zip(before, now, strict=True)]
+    return any(high > factor * low for low, high in pairs)
 
 
 def origin(part, known):

@@ -204,6 +204,24 @@ fn validate_writes_no_file() {
     let doubtful = folder.ok("validate mine.json --set mu=[2,3,4]");
     assert!(doubtful.lines().next().is_some_and(|line| line.ends_with(", 1 warning")), "{doubtful}");
     assert!(!printed.lines().next().is_some_and(|line| line.contains("warning")), "{printed}");
+    // The mesh that is named has the error that is asked for.
+    let pin = json!({ "size_m": [0.008, 0.010, 0.012], "elements": [20, 10, 12] });
+    folder.write(
+        "clamp.json",
+        &json!({ "scene": { "pin": pin, "clamp": { "width_m": 0.002 } }, "run": { "start": "compared" } })
+            .to_string(),
+    );
+    let clamped = |more: &str| folder.command(&format!("validate clamp.json{more}")).assert().code(0);
+    let other = clamped("");
+    let warning = "the mesh error stays unknown in 1 job: the clamp is 2 mm wide on the mesh, and 2.4 mm on the coarser one; 24 elements in x have the \
+                   same clamp on both";
+    assert!(stderr(&other).contains(warning), "{}", stderr(&other));
+    assert!(
+        stdout(&other).lines().next().is_some_and(|line| line.ends_with(", 1 warning")),
+        "{}",
+        stdout(&other)
+    );
+    assert!(!stderr(&clamped(" --set elements=[24,10,12]")).contains("mesh error"));
 }
 
 /// Every shipped study.

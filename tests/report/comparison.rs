@@ -63,6 +63,15 @@ fn measured_points_are_compared_with_the_study() {
         "{page}"
     );
     assert!(page.contains("## Comparison"), "{page}");
+    // Who sees the verdict alone hears of it, too.
+    let unmatched = |rows: &[JobRow]| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        write_compared(&report(rows), folder.path()).expect("the report is written").unmatched
+    };
+    let one = "1 of the 3 points of rig is compared with nothing: no finished job of simulated is at their parameters, or on both sides of them";
+    assert_eq!(unmatched(&rows), [one]);
+    rows.pop();
+    assert_eq!(unmatched(&rows), Vec::<String>::new());
 }
 
 /// Protects: a comparison begins with how far the simulation is from the measured values, in which direction, and where it agrees.

@@ -377,7 +377,7 @@ fn doubtful_results_are_listed() {
         "the identities of the window have a residual of 0.15",
         "the energies of the run have a residual of 0.02, and the identities of the window have a residual of 0.03",
         "The pin hops (1)",
-        "the normal force reaches 145 times the load, and the nodes of the base are apart from the disk for 93 % of the time on average: the whole pin flies and lands, and the frequency is that of its landings",
+        "the normal force reaches 145 times the load, and the nodes of the base are apart from the disk for 93 % of the time on average: the whole pin flies and lands, and the frequency is that with which its flights repeat",
     ] {
         assert!(found.contains(part), "{part}: {found}");
     }

@@ -209,7 +209,7 @@ fn clamps_in_words(OtherClamps { jobs, width_m, coarser_width_m, elements }: &Ot
         format!("; {number} elements in {axis} have the same clamp on both")
     });
     format!(
-        "the mesh error of limit cycles stays unknown in {}: the clamp is {} wide on the mesh, and {coarser}{better}",
+        "but for steady sliding, the mesh error stays unknown in {}: the clamp is {} wide on the mesh, and {coarser}{better}",
         count(*jobs, "job"),
         quantity(*width_m, "m")
     )

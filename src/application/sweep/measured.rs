@@ -158,7 +158,7 @@ pub(super) fn parse(text: &str, file: &str, source_name: &str) -> Result<Measure
     Ok(MeasuredFile { parameters: parameters.collect(), rows, warnings, has_thresholds })
 }
 
-/// Nobody hears a squeal below this frequency \[Hz\], and none is above as many kHz.
+/// Squeal is above this frequency \[Hz\], and below as many kHz.
 const LOW_HZ: f64 = 100.0;
 
 /// A warning if all frequencies look like kHz.

@@ -88,16 +88,18 @@ fn does_not_close(row: &JobRow) -> Option<String> {
     (!open.is_empty()).then(|| open.join(", and "))
 }
 
-/// The normal force over the load of a pin that flies and lands: nearly none, and more than a contact that slides, sticks and separates has. In
-/// `figure7` it reaches 3; with a mass that rides on the pin and falls back it has reached some 100.
+/// The normal force over the load of a pin that flies and lands: nearly none, and more than three times the most in `figure7`, which is 3.
 const FLIGHT: f64 = 0.05;
 const LANDING: f64 = 10.0;
 
 fn hops(row: &JobRow) -> Option<String> {
     let hops = |record: &&JobRecord| record.n_over_f_min < FLIGHT && record.n_over_f_max > LANDING;
     let record = row.record().filter(hops)?;
-    let of_landings =
-        if record.outcome == Outcome::Periodic { ", and the frequency is that of its landings" } else { "" };
+    let of_landings = if record.outcome == Outcome::Periodic {
+        ", and the frequency is that with which its flights repeat"
+    } else {
+        ""
+    };
     Some(format!(
         "the normal force reaches {} times the load, and the nodes of the base are apart from the disk for {} % of the time on average: the \
          whole pin flies and lands{of_landings}",
