@@ -20,7 +20,7 @@ import subprocess
 import sys
 
 import runs
-from evidence import DIFFERS, parts
+from evidence import parts
 
 # Largest relative error of mu* that is asked for.
 WANTED = 0.01
@@ -450,7 +450,7 @@ def again(number):
     found = cases(runs.sweep(preset_study(name, preset=name), database))
     texts = {f"{case['omega_rpm']:g} rpm": "" if case["mu_star"] is None else f"{case['mu_star']:.4f}" for case in found}
     print(f"`{name}`: {', '.join(f'μ* {text} at {speed}' for speed, text in texts.items())}")
-    sys.exit(DIFFERS if runs.differences(f"`{name}`, μ*", kept, texts) else 0)
+    runs.end_again("accuracy", number % len(names), len(names), runs.differences(f"`{name}`, μ*", kept, texts))
 
 
 def main():

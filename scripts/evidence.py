@@ -105,6 +105,22 @@ def stamp(part):
     STAMPS.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")
 
 
+def stamp_again(part, number, count):
+    """Notes that one of the `count` samples of a part whose runs take hours was computed again, and that its results were the kept ones."""
+    known = stamps()
+    own = known[part].get("again", {})
+    samples = own["samples"] if own.get("solver") == solver_version() else []
+    known[part]["again"] = {"date": datetime.date.today().isoformat(), "of": count, "samples": sorted({*samples, number}), "solver": solver_version()}
+    STAMPS.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")
+
+
+def solver_of(own):
+    """The version of the solver of a part, and how many samples of it gave the same with the version of now."""
+    found = own.get("again", {})
+    is_of_now = found.get("solver") == solver_version()
+    return f"{own['solver']}" + (f" ({len(found['samples'])} of {found['of']} samples are the same with {found['solver']})" if is_of_now else "")
+
+
 def collapsed(text):
     return " ".join(text.split())
 
@@ -146,7 +162,7 @@ def has_changed(part, before, now):
 def origin(part, known):
     own = known[part]
     now = solver_version()
-    version = f"version {own['solver']} of the solver" + (f", which is at {now} now" if own["solver"] != now else "")
+    version = f"version {solver_of(own)} of the solver" + (f", which is at {now} now" if own["solver"] != now else "")
     return f"{own['date']}, commit {own['commit']}, {version}"
 
 
@@ -249,7 +265,7 @@ def claims_page(every):
     for part, text in every.items():
         for sentence in sentences(part, text):
             own = known[part]
-            rows.append(f"| {sentence} | [{PAGE_OF[part]}.md]({PAGE_OF[part]}.md) | {own['date']} | {own['commit']} | {own['solver']} |")
+            rows.append(f"| {sentence} | [{PAGE_OF[part]}.md]({PAGE_OF[part]}.md) | {own['date']} | {own['commit']} | {solver_of(own)} |")
     old = sum(own["solver"] < solver_version() for own in known.values())
     return CLAIMS_PAGE.format(version=solver_version(), old=old, count=len(known), rows="\n".join(rows))
 
@@ -320,7 +336,7 @@ def main():
                     sys.exit(f"docs/evidence/{name} does not have the {count} rows that {page}.md says")
     if left:
         sys.exit(f"docs/evidence: no page names {', '.join(sorted(left))} any more: remove it")
-    old = [f"{part} ({own['solver']})" for part, own in stamps().items() if own["solver"] < solver_version()]
+    old = [f"{part} ({solver_of(own)})" for part, own in stamps().items() if own["solver"] < solver_version()]
     print(f"older than the solver ({solver_version()}): {', '.join(old)}")
 
 

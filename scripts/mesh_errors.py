@@ -225,7 +225,7 @@ def again(number):
             where = f"{own['name']}, mesh {level}, mu = {row['mu']}, {row['omega_rpm']} rpm"
             differ += runs.differences(where, {name: row[name] for name in columns}, texts)
         print(f"{own['name']}, mesh {level}: {len(kept)} results compared")
-    sys.exit(runs.evidence.DIFFERS if differ else 0)
+    runs.end_again("mesh_errors", number % len(SCENES), len(SCENES), differ)
 
 
 def run_modes(levels, names):
