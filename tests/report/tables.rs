@@ -4,7 +4,7 @@ use crate::synthetic::{done, failed, partial_study, periodic, row, with};
 use serde_json::{Value, json};
 use tribosweep_mechanics::analysis::{Outcome, Regime};
 use tribosweep_output::report::tables::{self, Quantity};
-use tribosweep_output::report::{JobRow, RowState};
+use tribosweep_output::report::{JobRow, RowState, View};
 
 /// The lines of the Markdown tables as cells without padding, rules left out.
 fn cells(rows: &[JobRow], quantity: Quantity) -> Vec<Vec<String>> {
@@ -57,6 +57,18 @@ fn frequency_and_regime_cells() {
     let regime = cells(&partial_study(), Quantity::Regime);
     assert_eq!(regime[4], ["10", "stable", "stick_slip_separation", "stick_slip_separation~"]);
     assert_eq!(regime[5], ["50", "stable", "failed", "–"]);
+}
+
+/// Protects: what a run prints ends with what is known of the errors by the mesh, and has no table of frequencies if there are none.
+#[test]
+fn a_run_prints_what_is_known_of_its_errors() {
+    let text = tables::of_results(&partial_study(), &View::default(), "t");
+    let heads: Vec<&str> = text.lines().filter(|line| line.starts_with("# ")).collect();
+    assert_eq!(heads, ["# t: macroscopic friction coefficient μ\\*", "# t: frequency [Hz]"]);
+    let last = text.lines().last().expect("a line");
+    assert!(last.starts_with("- Mesh: the error of ") && last.contains("is unknown"), "{text}");
+    let stable: Vec<JobRow> = partial_study().into_iter().filter(|row| row.parameter("mu").as_f64() == Some(0.2)).collect();
+    assert!(!tables::of_results(&stable, &View::default(), "t").contains("frequency"), "{text}");
 }
 
 /// Protects: the legend below a table explains the marks that are in it, and no others.

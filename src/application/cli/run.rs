@@ -9,8 +9,7 @@ use super::submit::{Priority, submit};
 use super::unreadable::log_unreadable_rows;
 use super::work::{Checkpoints, Retries, Threads, options, work_on};
 use crate::queue::{Clock, Location, Queue, Shard};
-use crate::report::JobRow;
-use crate::report::tables::{self, Quantity};
+use crate::report::tables;
 use crate::sweep::{self, ReportRequest};
 
 /// Arguments of `run`.
@@ -43,15 +42,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             submit(&plan, &args.priority, Shard::WHOLE, &args.replacement, queue).await?;
             let code = work_on(&plan, options(&args.threads, Some(&args.checkpoints)), queue).await?;
             let content = sweep::read_report(queue, &ReportRequest::of_study(name)).await?;
-            print(&tables::page(&content.rows, &content.view, Quantity::MuStar, name))?;
-            let has_frequency =
-                |row: &JobRow| row.record().is_some_and(|record| record.frequency_hz.is_some());
-            if content.rows.iter().any(has_frequency) {
-                print(&format!(
-                    "\n{}",
-                    tables::page(&content.rows, &content.view, Quantity::Frequency, name)
-                ))?;
-            }
+            print(&tables::of_results(&content.rows, &content.view, name))?;
             report::write(queue, &content, &args.out.of(name), None).await?;
             queue.ensure_place().await?;
             Ok(code.max(log_unreadable_rows(&content.rows)))

@@ -389,7 +389,7 @@ pub(super) fn unknown_help(wrong: &str) -> Vec<String> {
         (parameter.name, vec![parameter.name.to_owned(), last, field])
     };
     let nearest = suggest::nearest(wrong, PARAMETERS.iter().map(spellings));
-    let suggestion = nearest.map(|name| format!("did you mean `{name}`?"));
+    let suggestion = nearest.map(|name| suggest::question(wrong, name));
     suggestion.into_iter().chain(["`tribosweep parameters` lists all of them".to_owned()]).collect()
 }
 

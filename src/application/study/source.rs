@@ -4,6 +4,7 @@ use super::error::{Problem, StudyError};
 use super::json::{NUMBER, TypeMismatch, number_hint};
 use super::locate::{self, FieldSpan, FieldSpans, NotJson, Position, RepeatedKey, join};
 use super::parameter::Parameter;
+use super::suggest::question;
 use serde_json::Value;
 
 /// Longer values are shortened in messages.
@@ -161,9 +162,8 @@ impl SourceText {
             self.problem(&field, mismatch.message)
         };
         let of_parameter = Some(&field).filter(|_| mismatch.is_name).and_then(|field| meant_field(field));
-        problem
-            .help
-            .extend(of_parameter.or(mismatch.suggestion).map(|name| format!("did you mean `{name}`?")));
+        let own = field.rsplit('.').next().unwrap_or(&field);
+        problem.help.extend(of_parameter.or(mismatch.suggestion).map(|name| question(own, &name)));
         if problem.message == NUMBER {
             // The value as the file has it, in quotes.
             let text = problem.value.as_deref().and_then(|value| serde_json::from_str::<String>(value).ok());

@@ -1,5 +1,7 @@
 //! Suggestions for misspelt names.
 
+use crate::units::name_and_unit;
+
 /// Least similarity (Jaro–Winkler) of a suggestion; less similar names mislead more often than they help.
 const LEAST_SIMILARITY: f64 = 0.75;
 
@@ -81,6 +83,17 @@ pub fn misspelt_name<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) 
     most_similar(wrong, names.into_iter().map(|name| (name, vec![name.to_owned()])), MISSPELT)
 }
 
+/// The question whether `wrong` means a name, with the unit of that name if `wrong` has the same words with another one.
+pub(super) fn question(wrong: &str, meant: &str) -> String {
+    let (words, unit) = name_and_unit(meant);
+    let other = wrong.strip_prefix(words).and_then(|rest| rest.strip_prefix('_'));
+    let factor = if other == Some("rad_s") && unit == "rpm" { " (1 rad/s = 9.549 rpm)" } else { "" };
+    match other {
+        Some(_) if !unit.is_empty() => format!("did you mean `{meant}`? It is in {unit}{factor}"),
+        _ => format!("did you mean `{meant}`?"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,6 +124,22 @@ mod tests {
         }
         // Among other names, an alias means nothing.
         assert_eq!(nearest_name("E", ["run", "work"]), None);
+    }
+
+    /// Protects: a name with another unit is answered with the unit of the name that exists, and a misspelt name is not.
+    #[test]
+    fn another_unit_is_named() {
+        for (wrong, meant, words) in [
+            ("omega_rad_s", "omega_rpm", "did you mean `omega_rpm`? It is in rpm (1 rad/s = 9.549 rpm)"),
+            ("young_modulus_gpa", "young_modulus_pa", "did you mean `young_modulus_pa`? It is in Pa"),
+            ("size_z_mm", "size_z_m", "did you mean `size_z_m`? It is in m"),
+            ("omega", "omega_rpm", "did you mean `omega_rpm`?"),
+            ("omga_rpm", "omega_rpm", "did you mean `omega_rpm`?"),
+            ("mu_k", "mu", "did you mean `mu`?"),
+        ] {
+            assert_eq!(question(wrong, meant), words);
+        }
+        assert_eq!(format!("{:.3}", 1.0 / crate::units::rad_per_s_from_rpm(1.0)), "9.549");
     }
 
     /// Protects: every alias leads to a name that exists, and no alias is a name itself or stands twice.

@@ -12,6 +12,27 @@ pub(super) fn in_words(rows: &[JobRow]) -> Vec<String> {
     if records.is_empty() {
         return Vec::new();
     }
+    let mut sentences = of_mesh(rows);
+    let errors = records.iter().map(|record| record.mu_star_se.abs());
+    let largest = errors.filter(|se| se.is_finite()).fold(0.0, f64::max);
+    sentences.push(format!(
+        "Statistics: the standard error of μ* over the cycles is at most {}.",
+        significant(largest, 2)
+    ));
+    let few = if records.iter().any(|record| record.mesh_error().is_err()) {
+        " Where the mesh error is unknown, μ* has three decimals at most and a frequency four digits."
+    } else {
+        ""
+    };
+    sentences.push(format!(
+        "Digits: μ* and frequencies end at the digit in which the larger of the two errors begins.{few} jobs.csv has all digits."
+    ));
+    sentences
+}
+
+/// Sentences about the errors by the mesh, and how many jobs reach what they ask for. Empty if there are no results.
+pub(super) fn of_mesh(rows: &[JobRow]) -> Vec<String> {
+    let records: Vec<_> = rows.iter().filter_map(JobRow::record).collect();
     let mut unknown: IndexMap<&str, usize> = IndexMap::new();
     let mut largest = [0.0_f64; 2];
     for error in records.iter().map(|record| record.mesh_error()) {
@@ -45,20 +66,6 @@ pub(super) fn in_words(rows: &[JobRow]) -> Vec<String> {
         ));
     }
     sentences.extend(asked_in_words(rows));
-    let errors = records.iter().map(|record| record.mu_star_se.abs());
-    let largest = errors.filter(|se| se.is_finite()).fold(0.0, f64::max);
-    sentences.push(format!(
-        "Statistics: the standard error of μ* over the cycles is at most {}.",
-        significant(largest, 2)
-    ));
-    let few = if jobs_unknown > 0 {
-        " Where the mesh error is unknown, μ* has three decimals at most and a frequency four digits."
-    } else {
-        ""
-    };
-    sentences.push(format!(
-        "Digits: μ* and frequencies end at the digit in which the larger of the two errors begins.{few} jobs.csv has all digits."
-    ));
     sentences
 }
 

@@ -1,5 +1,6 @@
 //! Tables of the same layout as the curves: speed by friction coefficient, one cell per job.
 
+use super::accuracy;
 use super::digits;
 use super::layout::{Group, Layout, PlacedJob};
 use super::page::tables_of;
@@ -9,7 +10,7 @@ use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::view::View;
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::publish::markdown;
-use crate::publish::page::Page;
+use crate::publish::page::{Block, Page};
 use crate::publish::table::{FileColumns, Head, Table};
 use crate::publish::value::{self, MISSING};
 use serde_json::Value;
@@ -147,6 +148,21 @@ pub fn page(rows: &[JobRow], view: &View, quantity: Quantity, title: &str) -> St
     let rows = rows.iter().filter(|row| !row.is_at_boundary());
     let lead = tables_of(&Layout::of(rows, view), quantity, &HashMap::new());
     markdown::of_page(&Page { title: format!("{title}: {}", quantity.title()), lead, ..Page::default() })
+}
+
+/// What a run has found, for a terminal: a page of μ\*, one of the frequency if there is one, and what is known about the errors by the mesh.
+pub fn of_results(rows: &[JobRow], view: &View, title: &str) -> String {
+    let page = |quantity| page(rows, view, quantity, title);
+    let has_frequency = |row: &JobRow| row.record().is_some_and(|record| record.frequency_hz.is_some());
+    let mut parts = vec![page(Quantity::MuStar)];
+    if rows.iter().any(has_frequency) {
+        parts.push(page(Quantity::Frequency));
+    }
+    let errors = accuracy::of_mesh(rows);
+    if !errors.is_empty() {
+        parts.push(markdown::of_blocks(&[Block::list(errors)]));
+    }
+    format!("{}\n", parts.join("\n").trim_end())
 }
 
 /// The marks that occur in the tables of a quantity with their meaning.
