@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes docs/evidence/speed.md: how long figure7 takes on this machine and where the time goes.
+"""Writes docs/evidence/speed.md: how long figure7 takes on this machine, and what its settings save.
 
-The profile needs Linux's `perf` (Debian: linux-perf); without it that section says so.
+Every number in the page is computed. Takes half an hour on two cores; they must be idle.
 """
 
 import json
@@ -9,7 +9,6 @@ import math
 import os
 import platform
 import re
-import shutil
 import statistics
 import subprocess
 import time
@@ -17,8 +16,6 @@ import time
 import runs
 
 STUDY = "studies/figure7.json"
-# The sweeps are timed at this damping, so that they compare with those of before.
-BETA_R_S = 5e-8
 
 
 def cpu():
@@ -31,10 +28,8 @@ def cpu():
 
 
 def figure7(**changes):
-    """The study with the damping at which it is timed, and top-level members replaced."""
-    study = json.loads((runs.ROOT / STUDY).read_text())
-    del study["damping"]
-    return study | {"numerics": {"beta_r_s": BETA_R_S}} | changes
+    """The study with top-level members replaced."""
+    return json.loads((runs.ROOT / STUDY).read_text()) | changes
 
 
 def timed(threads, study):
@@ -79,23 +74,6 @@ def ramp_table():
     )
 
 
-def profile():
-    if shutil.which("perf") is None:
-        return "`perf` was not found, so there is no profile here.\n"
-    data = runs.WORK / "perf.data"
-    command = [runs.PROGRAM, "solve", str(runs.ROOT / STUDY), "--set", "mu=0.4", "--set", "omega_rpm=0.5"]
-    subprocess.run(["perf", "record", "-q", "-e", "cpu-clock", "-o", data, *command], check=True,
-                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    report = subprocess.run(["perf", "report", "-i", data, "--stdio", "--no-children"], check=True, text=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
-    rows = []
-    for line in report.splitlines():
-        found = re.match(r"\s*([\d.]+)%\s+\S+\s+\S+\s+\[\S\]\s+(.*)", line)
-        if found and float(found.group(1)) >= 0.5:
-            rows.append([f"{float(found.group(1)):.1f} %", f"`{found.group(2).strip()}`"])
-    return runs.table(["share", "function"], rows)
-
-
 def machine_table(machine):
     rows = [["fused multiply-add", f"{machine['fused_gflops']:.0f} GFLOP/s"],
             ["plain multiplications and additions", f"{machine['plain_gflops']:.0f} GFLOP/s"]]
@@ -116,6 +94,8 @@ WAYS = [
     ("the presets with steps of 0.9 of the limit (dropped)", FAST | {"safety_factor": 0.9}),
     ("the presets with 10 cycles and half the drift (dropped)", FAST | {"cycles": 10, "drift_tolerance": 0.0005}),
 ]
+# A change of μ* from which on a job is counted.
+LARGE = 0.003
 # Each way is timed so often, in alternating order.
 ROUNDS = 2
 
@@ -123,7 +103,7 @@ ROUNDS = 2
 def solved(name, settings):
     """CPU seconds of figure7 with these settings on an empty database, and its rows."""
     study = figure7(name=name)
-    study["numerics"] |= {key: settings[key] for key in ("precision", "safety_factor") if key in settings}
+    study["numerics"] = study.get("numerics", {}) | {key: settings[key] for key in ("precision", "safety_factor") if key in settings}
     study["run"] = {"start": settings["start"]}
     study["detection"] = {key: settings[key] for key in ("cycles", "drift_tolerance") if key in settings}
     study["stability"] = settings["stability"]
@@ -132,7 +112,7 @@ def solved(name, settings):
 
 
 def way_table():
-    """CPU time of every way, and what it changes in the results of the first one."""
+    """CPU time of every way, what it changes in the results of the first one, and which jobs the presets change."""
     times, rows = [[] for _ in WAYS], [None for _ in WAYS]
     for turn in range(ROUNDS):
         order = range(len(WAYS)) if turn % 2 == 0 else reversed(range(len(WAYS)))
@@ -143,8 +123,33 @@ def way_table():
     for (words, _), used, found in zip(WAYS, times, rows):
         table.append([words, f"{statistics.median(used):.0f}",
                       f"{statistics.median(times[0]) / statistics.median(used):.2f}", *changes(rows[0], found)])
-    return runs.table(["way", "CPU [s]", "times as fast", "other statuses or regimes", "median, largest change of μ\\*",
-                       "beyond 0.3 %", "largest change of f", "of a share"], table)
+    heads = ["way", "CPU [s]", "times as fast", "other statuses or regimes", "median, largest change of μ\\*", f"beyond {100 * LARGE:g} %",
+             "largest change of f", "of a share"]
+    of_presets = rows[[settings for _, settings in WAYS].index(FAST)]
+    return runs.table(heads, table) + "\n" + in_words(rows[0], of_presets)
+
+
+def in_words(before, after):
+    """Which jobs change by more than `LARGE`, and what the jobs of the second sweep take."""
+    large = []
+    for (mu, omega_rpm), old in before.items():
+        new = after[mu, omega_rpm]
+        change = new["mu_star"] / old["mu_star"] - 1
+        if abs(change) > LARGE:
+            period = ", and the period doubles" if old["frequency_hz"] and new["frequency_hz"] and new["frequency_hz"] < 0.6 * old["frequency_hz"] else ""
+            large.append(f"at μ = {mu:g} and {omega_rpm:g} rpm by {100 * change:+.1f} %{period}")
+    periodic = [row for row in after.values() if row["status"] == "periodic"]
+    by_modes = [row for row in after.values() if row["decided_by"] == "eigenvalues"]
+    simulated = statistics.mean(row["simulated_s"] for row in periodic)
+    cycles = statistics.mean(row["simulated_s"] * row["frequency_hz"] for row in periodic)
+    return (
+        f"With the presets {len(large)} of {len(before)} jobs change by more than {100 * LARGE:g} %" + (": " + "; ".join(large) if large else "")
+        + ". [solving.md](../solving.md#a-start-from-a-coarser-mesh) says why single jobs can.\n\n"
+        f"What is left: a periodic job simulates {1e3 * simulated:.1f} ms on its own mesh on average, which are {cycles:.0f} of its cycles. "
+        f"Eigenvalues decide {len(by_modes)} of {len(after)} jobs.\n"
+        "Longer steps and fewer cycles are no defaults, because they change more jobs or save little."
+        " The state of a neighbour in the grid as a start is none, because a result would depend on which job ran first.\n"
+    )
 
 
 def changes(before, after):
@@ -159,14 +164,7 @@ def changes(before, after):
                  if a["frequency_hz"] and b["frequency_hz"]]
     share = max(abs(b[name] - a[name]) for a, b in pairs for name in shares)
     return [str(other), f"{100 * mu_star[len(mu_star) // 2]:.3f} %, {100 * mu_star[-1]:.2f} %",
-            str(sum(change > 0.003 for change in mu_star)), f"{100 * max(frequency):.2f} %", f"{share:.4f}"]
-
-
-def reference_grid():
-    """CPU seconds of figure7's grid with the preset `reference`."""
-    study = figure7(name="figure7_reference", preset="reference")
-    del study["scene"]["pin"]["elements"]
-    return timed(2, study)[1]
+            str(sum(change > LARGE for change in mu_star)), f"{100 * max(frequency):.2f} %", f"{share:.4f}"]
 
 
 def mesh_table(cases):
@@ -184,15 +182,13 @@ def main():
     wall_1, cpu_1, _ = timed(1, figure7())
     wall_2, cpu_2, rows = timed(2, figure7())
     ways = way_table()
-    reference_s = reference_grid()
     bench = benchmark()
     elements = json.loads((runs.ROOT / STUDY).read_text())["scene"]["pin"]["elements"]
     nodes = math.prod(n + 1 for n in elements)
     steps = sum(row["steps"] for row in rows)
-    busy = sum(row["wall_s"] for row in rows)
     runs.write(
         "performance",
-        "# How fast it is, and how fast it could be\n\n"
+        "# How fast it is\n\n"
         "Written by `scripts/performance.py`; do not edit. "
         f"Machine: {cpu()}, {os.cpu_count()} cores, {platform.system()}. It is shared with others: its speed varies by tens of\n"
         "percent, sometimes by half, for seconds at a time.\n\n"
@@ -204,18 +200,15 @@ def main():
         "writes 12 numbers of u and p per node. *Bound* is the time of the operations or of this traffic at the measured peaks,\n"
         "whichever is longer.\n\n"
         + machine_table(bench["machine"]) + "\n" + mesh_table(bench["meshes"])
-        + "\nThe goal was 2.5 ns for a job with 8 lanes on 12 × 15 × 10 elements, 5 ns on 48 × 60 × 40, and 8 ns for one lane.\n"
-        "The product prevents the first goal: it takes some 300 instructions for a block of eight numbers, of which two thirds\n"
-        "are arithmetic. It is no faster on meshes whose scratch memory stays in the L1 cache, so it does not wait for memory. On\n"
-        "large meshes with many lanes it does. There the program uses fewer lanes (1 beyond 20 000 nodes, 2 beyond 10 000, 4\n"
-        "beyond 5 000), which changes no bit of a result.\n\n"
+        + "\nThe product is no faster on meshes whose scratch memory stays in the L1 cache, so it does not wait for memory. On large meshes with\n"
+        "many lanes it does. There the program uses fewer lanes, which changes no bit of a result.\n\n"
         "## What parts cost\n\n12 × 15 × 10 elements, 8 lanes, ns per node, step and job:\n\n"
         + runs.table(["with, or without", "with", "without"],
                      [[pair["what"], f"{pair['with_ns']:.2f}", f"{pair['without_ns']:.2f}"] for pair in bench["pairs"]])
         + "\nDifferences of a few tenths mean nothing: the placement of the arrays in memory changes the times by as much.\n\n"
         "## The sweep\n\n"
         "The whole command `tribosweep run studies/figure7.json` on an empty database, report included "
-        f"({' × '.join(map(str, elements))} elements, here and below with β_R = 50 ns instead of today's 27.5 ns):\n\n"
+        f"({' × '.join(map(str, elements))} elements):\n\n"
         + runs.table(
             ["threads", "wall [s]", "CPU [s]", "jobs/min"],
             [[1, f"{wall_1:.1f}", f"{cpu_1:.1f}", f"{60 * len(rows) / wall_1:.0f}"],
@@ -225,31 +218,13 @@ def main():
         f"The runs of the {len(rows)} jobs on their own mesh take {steps} steps of {nodes} nodes.\n\n"
         "## Ways to solve it\n\n"
         f"The same sweep in different ways, on two threads: medians of {ROUNDS} runs in alternating order. Changes are those from\n"
-        "the first way, over all jobs. In two alternating pairs, commit b0d2689 took 256 and 238 s, and the presets 78 and 77 s.\n\n"
+        "the first way, over all jobs.\n\n"
         + ways
-        + "\nTwo jobs change by more than 0.3 %, for reasons that [solving.md](../solving.md#a-start-from-a-coarser-mesh) gives: at μ = 0.6 and\n"
-        "50 rpm the period doubles, and at μ = 0.5 and 4 rpm a slow transient ends within the tolerance.\n\n"
-        "**The goal was an eighth of the time, and it is not reached.** What is left, in the same sweep:\n\n"
-        "* A periodic job simulates 3.9 ms on average: 20 cycles that count, and some 40 of transient. Two motions make the transient\n"
-        "  slow: a swing at 1.4 kHz, and a creep of the amplitude. Both belong to the pin on its own mesh, so a better start does not\n"
-        "  remove them. The difference of the sliding equilibria of both meshes, added to the start, changed the simulated time by\n"
-        "  1 %. Reduced rank extrapolation of the state from 5 to 12 cycles (Mešina 1977) saved 7 % and was dropped.\n"
-        "* A stable job takes two eigenvalue problems of 440 unknowns and two looks at residuals, 0.4 s, and a quarter of them take\n"
-        "  one round of corrections.\n"
-        "* Longer steps and fewer cycles would save more. They were dropped because they change μ\\* of more jobs by more than 0.3 %,\n"
-        "  or because they do not save enough for that.\n"
-        "* Fused multiply-add saved 3 to 7 % of a step in single precision, and hardware without it would have to emulate it. It was\n"
-        "  dropped.\n\n"
-        f"The same grid with the preset `reference` (36 × 45 × 30 elements) takes {reference_s:.0f} s of processor time.\n\n"
+        + "\n"
         "## Time to the steady state\n\n"
         "Does a slower start shorten the transient? Twenty jobs of all regimes, 12 × 15 × 10 elements, load ramped up in:\n\n"
         + ramp_table()
-        + "\nThe ramp is a small part of a job, and limit cycles are found at about the same time with every ramp. Starting from\n"
-        "the final state of a neighbour in the grid was tried, too. Over fourteen pairs of jobs it took a quarter less simulated\n"
-        "time and led to the same limit cycles. It was not adopted, because a result would then depend on which job ran first.\n"
-        + "\n## Profile\n\nOne job (μ = 0.4, 0.5 rpm), one lane, sampled by `perf`:\n\n" + profile()
-        + "\nThe vectorised entries (`vectorize_…`) are in this order the pass of the step, products of the energies (two every\n"
-        "16 steps), contact, statistics, works of the contact forces and the constrained planes.\n",
+        + "\nThe ramp is a small part of a job.\n",
     )
 
 
