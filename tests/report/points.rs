@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use tribosweep_mechanics::analysis::program::ProgramWindow;
-use tribosweep_mechanics::analysis::{Outcome, Regime, SlidingStability};
+use tribosweep_mechanics::analysis::{Outcome, Regime, SlidingStability, UnknownError};
 use tribosweep_output::report::{
     Basin, BranchPoint, Crossing, Findings, JobRow, Minimum, Report, RowState, StabilityPoint, write,
 };
@@ -31,7 +31,12 @@ fn point(row: &JobRow) -> StabilityPoint {
     let growth_rate_per_s = 1000.0 * (mu - 0.3);
     let mut stability = SlidingStability { mu_star: mu, ..SlidingStability::example() };
     stability.modes[0].growth_rate_per_s = growth_rate_per_s;
-    StabilityPoint { parameters: row.parameters.clone(), on_grid: true, is_compared: false, stability }
+    StabilityPoint {
+        parameters: row.parameters.clone(),
+        on_grid: true,
+        stands_alone: Some(UnknownError::NoCoarserMesh),
+        stability,
+    }
 }
 
 /// Boundaries and minima along both parameters.

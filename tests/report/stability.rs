@@ -7,7 +7,9 @@ use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
-use tribosweep_mechanics::analysis::{AboveBand, ComplexMode, Outcome, Regime, SlidingStability};
+use tribosweep_mechanics::analysis::{
+    AboveBand, ComplexMode, Outcome, Regime, SlidingStability, UnknownError,
+};
 use tribosweep_output::publish::chart::palette::DARK;
 use tribosweep_output::publish::chart::{At, Axis, Chart, Layer, Panel, Pen, Point, Sample, Shape};
 use tribosweep_output::report::figure::{Plot, StabilityPlot, figures, figures_with, stability_figures};
@@ -33,7 +35,12 @@ fn point(omega_rpm: f64, mu: f64) -> StabilityPoint {
     let modes = vec![mode(15_000.0, 1000.0 * (mu - mu_c(omega_rpm))), mode(21_000.0, -800.0)];
     let above_band = AboveBand::Nothing;
     let stability = SlidingStability { mu_star: mu, above_band, modes, ..SlidingStability::example() };
-    StabilityPoint { parameters: parameters(omega_rpm, mu), on_grid: true, is_compared: false, stability }
+    StabilityPoint {
+        parameters: parameters(omega_rpm, mu),
+        on_grid: true,
+        stands_alone: Some(UnknownError::NoCoarserMesh),
+        stability,
+    }
 }
 
 fn points() -> Vec<StabilityPoint> {
@@ -56,18 +63,19 @@ fn a_threshold_has_the_error_of_its_growth_rates() {
     assert_eq!(with_error([Some(20.0), None]), "0.22");
 }
 
-/// Protects: who reads modes without an error learns why, of the modes that the table shows: their point has no coarser mesh, or the mode has no
-/// partner on the other one.
+/// Protects: who reads modes without an error learns why, of the modes that the table shows: their point has no run on a coarser
+/// mesh, or one with another clamp, or the mode has no partner there.
 #[test]
 fn modes_without_an_error_have_a_reason() {
     let mut points = [point(1.0, 0.1), point(1.0, 0.2)];
     let of = |points: &[StabilityPoint], count| unknown_errors(points, ShownModes { count, near_hz: None });
-    let alone = "Not every mesh error is known. Of 4 modes, 4 have no coarser mesh to be compared with.";
+    let alone = "Not every mesh error is known. Of 4 modes, 4 have no run on a coarser mesh.";
     assert_eq!(of(&points, 2).as_deref(), Some(alone));
-    points[0].is_compared = true;
+    points[0].stands_alone = None;
     points[0].stability.modes[0].growth_rate_mesh_error_per_s = Some(10.0);
-    let both = "Not every mesh error is known. Of 4 modes, 2 have no coarser mesh to be compared with, and 1 has no mode on the coarser mesh that is \
-                clearly the same.";
+    points[1].stands_alone = Some(UnknownError::OtherClamp);
+    let both = "Not every mesh error is known. Of 4 modes, 1 has no mode on the coarser mesh that is clearly the same, and 2 have another width of \
+                the clamp on the coarser mesh.";
     assert_eq!(of(&points, 2).as_deref(), Some(both));
     // The leading mode has its error, and the other one is not shown.
     assert_eq!((of(&points[..1], 1), of(&[], 2)), (None, None));

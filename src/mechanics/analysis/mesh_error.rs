@@ -153,17 +153,20 @@ impl JobRecord {
         })
     }
 
-    /// Whether the modes were compared with those of a coarser mesh under the same clamp.
-    pub fn has_compared_modes(&self) -> bool {
-        let coarser = self.start.as_ref();
-        coarser.is_some_and(|coarser| coarser.same_clamp == Some(true) && !coarser.modes.is_empty())
+    /// Why the modes could not be compared with those of a coarser mesh; `None` if they were.
+    pub fn why_modes_stand_alone(&self) -> Option<UnknownError> {
+        match &self.start {
+            Some(coarser) if coarser.same_clamp == Some(false) => Some(UnknownError::OtherClamp),
+            Some(coarser) if coarser.same_clamp == Some(true) && !coarser.modes.is_empty() => None,
+            _ => Some(UnknownError::NoCoarserMesh),
+        }
     }
 
     /// The record of modes with their errors, from those of the coarser mesh. The error of a mode that is not clearly the same one there
     /// stays unknown.
     #[must_use]
     pub(super) fn with_errors_of_modes(mut self) -> Self {
-        if !self.has_compared_modes() {
+        if self.why_modes_stand_alone().is_some() {
             return self;
         }
         let (Some(elements), Some(coarser), Some(stability)) =

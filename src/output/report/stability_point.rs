@@ -1,7 +1,7 @@
 //! The linear stability of steady sliding at one point.
 
 use super::parameters::Parameters;
-use crate::analysis::{ComplexMode, SlidingStability};
+use crate::analysis::{ComplexMode, SlidingStability, UnknownError};
 use serde_json::Value;
 
 /// Steady sliding at one speed and one friction coefficient, and what its eigenvalues say.
@@ -11,8 +11,8 @@ pub struct StabilityPoint {
     pub parameters: Parameters,
     /// Whether it is a point of the grid. The other ones refine thresholds.
     pub on_grid: bool,
-    /// Whether its modes were compared with those of a coarser mesh.
-    pub is_compared: bool,
+    /// Why its modes could not be compared with those of a coarser mesh; `None` if they were.
+    pub stands_alone: Option<UnknownError>,
     /// The eigenvalues.
     pub stability: SlidingStability,
 }

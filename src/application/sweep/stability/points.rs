@@ -34,7 +34,7 @@ fn point(row: &JobRow, on_grid: bool) -> Option<StabilityPoint> {
     Some(StabilityPoint {
         parameters: row.parameters.clone(),
         on_grid,
-        is_compared: record.has_compared_modes(),
+        stands_alone: record.why_modes_stand_alone(),
         stability: record.stability.clone()?,
     })
 }

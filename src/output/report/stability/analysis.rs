@@ -248,7 +248,7 @@ fn speed(omega: &Value, along: &Along, points: &[&StabilityPoint]) -> Speed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::{AboveBand, SlidingStability};
+    use crate::analysis::{AboveBand, SlidingStability, UnknownError};
     use crate::report::figure::StabilityPlot::{LockIn, Map, Thresholds};
     use crate::report::figure::stability_figures;
 
@@ -263,7 +263,12 @@ mod tests {
         };
         let modes = modes.iter().map(mode).collect();
         let stability = SlidingStability { mu_star: mu, modes, ..SlidingStability::example() };
-        StabilityPoint { parameters: of(omega_rpm, mu, &[]), on_grid: true, is_compared: false, stability }
+        StabilityPoint {
+            parameters: of(omega_rpm, mu, &[]),
+            on_grid: true,
+            stands_alone: Some(UnknownError::NoCoarserMesh),
+            stability,
+        }
     }
 
     /// Protects: modes of neighbouring speeds with nearly the same frequency are one family, the one with the smallest threshold

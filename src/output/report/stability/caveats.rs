@@ -47,7 +47,7 @@ pub(in crate::report) fn small_contact(points: &[StabilityPoint]) -> Option<Stri
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::{AboveBand, SlidingStability};
+    use crate::analysis::{AboveBand, SlidingStability, UnknownError};
     use crate::report::parameters::Parameters;
 
     fn point(band_hz: f64, above_band: AboveBand, touching: usize, lifted: usize) -> StabilityPoint {
@@ -59,7 +59,12 @@ mod tests {
             ..SlidingStability::example()
         };
         let parameters = Parameters::new(1.0, 0.1, Vec::new());
-        StabilityPoint { parameters, on_grid: true, is_compared: false, stability }
+        StabilityPoint {
+            parameters,
+            on_grid: true,
+            stands_alone: Some(UnknownError::NoCoarserMesh),
+            stability,
+        }
     }
 
     /// Protects: where nobody looked is said, with the frequencies and the number of points; nothing is said where no mode can grow.

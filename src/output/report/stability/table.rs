@@ -4,7 +4,7 @@ use super::along::Along;
 use super::analysis::{Analysis, MOVES, rows};
 use super::caveats::{above_band, small_contact};
 use super::ranges::{Known, Onset, Speed};
-use crate::analysis::ComplexMode;
+use crate::analysis::{ComplexMode, UnknownError};
 use crate::publish::table::{Column, FileColumns, Head, Table};
 use crate::publish::value;
 use crate::report::layout::Group;
@@ -12,6 +12,7 @@ use crate::report::parameters::{self, MU, parameter_names};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
 use crate::units::name_and_unit;
+use indexmap::IndexMap;
 use serde_json::Value;
 
 /// A mode at a point, with its number from 1.
@@ -94,23 +95,24 @@ pub fn unknown_errors<'a>(
     points: impl IntoIterator<Item = &'a StabilityPoint>,
     shown: ShownModes,
 ) -> Option<String> {
-    let (mut all, mut alone, mut apart) = (0, 0, 0);
+    let mut all = 0;
+    let mut reasons: IndexMap<&str, usize> = IndexMap::new();
     for point in points {
         let modes = &point.stability.modes;
         let shown = shown.of(modes);
         let unknown =
             shown.iter().filter(|&&index| modes[index].growth_rate_mesh_error_per_s.is_none()).count();
-        *(if point.is_compared { &mut apart } else { &mut alone }) += unknown;
+        let reason = point
+            .stands_alone
+            .map_or("no mode on the coarser mesh that is clearly the same", UnknownError::reason);
+        if unknown > 0 {
+            *reasons.entry(reason).or_default() += unknown;
+        }
         all += shown.len();
     }
-    let reasons = [
-        (alone, "no coarser mesh to be compared with"),
-        (apart, "no mode on the coarser mesh that is clearly the same"),
-    ];
     let reasons: Vec<String> = reasons
         .into_iter()
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, what)| format!("{count} {} {what}", if count == 1 { "has" } else { "have" }))
+        .map(|(what, count)| format!("{count} {} {what}", if count == 1 { "has" } else { "have" }))
         .collect();
     let all = value::count(all, "mode");
     (!reasons.is_empty())
