@@ -8,9 +8,9 @@
 #   it on every Linux.
 # * an archive with the same program and licences, the book, the completions of shells, manual pages, the studies and the changes,
 # * checksums of both.
-# Needs rustup, Python 3 with venv, and Debian's packages file and qemu-user; the compiler for C comes from PyPI (ziglang). Ends with an error if a
-# program gives other results in the mini study than the ordinary one (growth rates to 12 digits), or other bits on an emulated processor than on this one, or if it has more than 25 MB. Says how long both take
-# for the study `clamps`.
+# Needs rustup, Python 3 with venv, and Debian's packages file, qemu-user and postgresql; the compiler for C comes from PyPI (ziglang). Ends with an error if a
+# program gives other results in the mini study than the ordinary one (growth rates to 12 digits), or other bits on an emulated processor than on this one, if it has more than 25 MB,
+# or if a page of the book cannot be followed word for word with the archive and the wheel for this processor. Says how long both programs take for the study `clamps`.
 set -euo pipefail
 root="$(cd "$(dirname "$0")/.." && pwd)"
 folder="${1:-$root/target/archives}"
@@ -23,6 +23,7 @@ cd "$root"
 for tool in file qemu-x86_64 qemu-aarch64; do
     command -v "$tool" > /dev/null || { echo "$tool is not there (Debian: apt-get install file qemu-user)"; exit 1; }
 done
+command -v initdb > /dev/null || ls /usr/lib/postgresql/*/bin/initdb > /dev/null || { echo "PostgreSQL is not there (Debian: apt-get install postgresql)"; exit 1; }
 rustup --quiet target add "${targets[@]}"
 tools="$root/target/tools/python"
 [ -x "$tools/bin/maturin" ] || { python3 -m venv "$tools" && "$tools/bin/pip" install --quiet maturin ziglang wheel; }
@@ -129,6 +130,24 @@ for target in "${targets[@]}"; do
     cp "$scratch/wheel/$wheel" "$folder"
     (cd "$folder" && sha256sum "$name.tar.gz" "$wheel" > "$name.sha256")
     echo "$folder/$name.tar.gz and $wheel: a program of $((bytes / 1000000)) MB"
+done
+
+# Follows the book with what somebody has who has no toolchain: an archive, and a Python with the wheel.
+follow_book() {
+    local name=$1 wheel=$2
+    mkdir "$scratch/reader"
+    tar -C "$scratch/reader" -xzf "$folder/$name.tar.gz"
+    python3 -m venv "$scratch/reader/python"
+    "$scratch/reader/python/bin/pip" install --quiet "$wheel" pandas xarray matplotlib
+    # The trap is run when this function has ended.
+    server=$(mktemp -d)
+    trap 'scripts/postgres.sh stop "$server"; rm -rf "$scratch"' EXIT
+    TRIBOSWEEP_TEST_POSTGRES=$(scripts/postgres.sh start "$server") TRIBOSWEEP_REQUIRE_TOOLS=1 TRIBOSWEEP_ARCHIVE="$scratch/reader/$name" \
+        TRIBOSWEEP_PYTHON="$scratch/reader/python/bin/python" cargo test --release --locked --quiet --test sweeps every_page_can_be_followed -- --nocapture
+    echo "every page can be followed with $name.tar.gz and $(basename "$wheel")"
+}
+for target in "${targets[@]}"; do
+    [ "${target%%-*}" != "$(uname -m)" ] || follow_book "tribosweep-$version-$target" "$(echo "$folder"/*"$(uname -m)"*.whl)"
 done
 # The archives are there, but more than is wanted.
 if [ ${#too_large[@]} -gt 0 ]; then

@@ -11,9 +11,8 @@ use std::path::Path;
 use std::sync::Mutex;
 
 /// The pages for users. Scripts write those of `docs/evidence`, and those of `docs/developers` are about building and testing.
-fn docs() -> Vec<(String, String)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
-    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+fn docs(root: &Path) -> Vec<(String, String)> {
+    let files = std::fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path());
     let pages = files.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
     let with_text = pages.map(|path| {
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
@@ -30,7 +29,8 @@ fn docs() -> Vec<(String, String)> {
 fn every_page_can_be_followed() {
     let is_example = |language: &str| ["sh", "json", "python"].contains(&language);
     let has_examples = |text: &str| steps::blocks(text).any(|block| is_example(block.language));
-    let all = docs();
+    let copy = reader::Copy::of_reader();
+    let all = docs(&copy.root);
     let pages: Vec<_> = all.iter().filter(|(_, text)| has_examples(text)).collect();
     assert_eq!(pages.len(), 10, "a page without examples");
     let waiting = Mutex::new(pages.iter());
@@ -41,7 +41,7 @@ fn every_page_can_be_followed() {
         loop {
             let Some((name, page)) = waiting.lock().unwrap().next() else { break };
             let begun = std::time::Instant::now();
-            let followed = catch_unwind(|| reader::follow(name, page));
+            let followed = catch_unwind(|| reader::follow(&copy, name, page));
             println!("{name}: {:.1} s", begun.elapsed().as_secs_f64());
             match followed {
                 Ok(Some(files)) => written.lock().unwrap().extend(files),

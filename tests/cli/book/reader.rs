@@ -2,15 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::os::unix::fs::{PermissionsExt, symlink};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::steps::{Step, steps, whole_study};
 use crate::cli::support::{Folder, TRIBOSWEEP};
 use crate::server::ServerDatabase;
 use crate::tools;
-
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// The server in the pages.
 const URL: &str = "postgres://me@dbhost/sweeps";
@@ -34,11 +32,37 @@ const HISTORY: &str = "history.csv";
 /// The files that a page wrote below folders, its history, and the first line of each that is a table in CSV.
 pub type Written = BTreeMap<String, Option<String>>;
 
+/// What a reader has.
+pub struct Copy {
+    /// The folder with the pages and the studies.
+    pub root: PathBuf,
+    program: PathBuf,
+    /// The folder with the Python module; `None` if Python has it.
+    module: Option<PathBuf>,
+    /// Where the reader's shell looks for other programs.
+    path: String,
+}
+
+impl Copy {
+    /// The archive that `TRIBOSWEEP_ARCHIVE` names, unpacked, with the wheel in the Python of `TRIBOSWEEP_PYTHON`, in a system without a toolchain.
+    /// Without that variable, the sources and what was built of them.
+    pub fn of_reader() -> Self {
+        if let Some(archive) = std::env::var_os("TRIBOSWEEP_ARCHIVE") {
+            let root = PathBuf::from(archive);
+            let path = "/usr/local/bin:/usr/bin:/bin".to_owned();
+            return Self { program: root.join("tribosweep"), root, module: None, path };
+        }
+        let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+        let path = std::env::var("PATH").unwrap_or_default();
+        Self { program: TRIBOSWEEP.into(), module: Some(root.join("src/python")), root, path }
+    }
+}
+
 /// Follows a page. `None` where a server or Python is missing.
-pub fn follow(name: &str, page: &str) -> Option<Written> {
+pub fn follow(copy: &Copy, name: &str, page: &str) -> Option<Written> {
     let folder = Folder::new();
-    symlink(Path::new(ROOT).join("studies"), folder.path("studies")).unwrap();
-    symlink(Path::new(ROOT).join("studies/pad.msh"), folder.path("pad.msh")).unwrap();
+    symlink(copy.root.join("studies"), folder.path("studies")).unwrap();
+    symlink(copy.root.join("studies/pad.msh"), folder.path("pad.msh")).unwrap();
     folder.write("base.csv", &height_map());
     std::fs::create_dir(folder.path("bin")).unwrap();
     for (program, text) in [("sbatch", SBATCH), ("squeue", "#!/bin/sh\n"), ("scancel", "#!/bin/sh\n")] {
@@ -58,21 +82,21 @@ pub fn follow(name: &str, page: &str) -> Option<Written> {
         return None;
     }
 
-    let run = |program: &str, arguments: [&str; 2]| {
-        let programs = Path::new(TRIBOSWEEP).parent().unwrap().display().to_string();
-        let path = std::env::var("PATH").unwrap_or_default();
-        let done = Command::new(program)
+    let run = |program: &Path, arguments: [&str; 2]| {
+        let programs = copy.program.parent().unwrap().display();
+        let mut command = Command::new(program);
+        command
             .args(arguments)
             .current_dir(folder.path("."))
-            .env("PATH", format!("{}:{programs}:{path}", folder.path("bin").display()))
-            .env("PYTHONPATH", Path::new(ROOT).join("src/python"))
+            .env("PATH", format!("{}:{programs}:{}", folder.path("bin").display(), copy.path))
             .env("PYTHONDONTWRITEBYTECODE", "1")
-            .env("TRIBOSWEEP_PROGRAM", TRIBOSWEEP)
             .env("MPLBACKEND", "agg")
             .env("TMPDIR", folder.path("bin"))
-            .env_remove("TRIBOSWEEP_DB")
-            .output()
-            .unwrap();
+            .env_remove("TRIBOSWEEP_DB");
+        if let Some(module) = &copy.module {
+            command.env("PYTHONPATH", module).env("TRIBOSWEEP_PROGRAM", &copy.program);
+        }
+        let done = command.output().unwrap();
         let [out, errors] = [done.stdout, done.stderr].map(|text| String::from_utf8(text).unwrap());
         assert!(done.status.success(), "{name}: {}{out}{errors}", arguments[1]);
         out
@@ -83,10 +107,10 @@ pub fn follow(name: &str, page: &str) -> Option<Written> {
             Step::Save(file, text) => folder.write(file, text),
             Step::Check(part) => {
                 folder.write("part.json", &whole_study(part));
-                run(TRIBOSWEEP, ["validate", "part.json"]);
+                run(&copy.program, ["validate", "part.json"]);
             }
-            Step::Run(commands) => output = run("bash", ["-euc", &commands.replace(URL, &url)]),
-            Step::Python(program) => output = run(&python, ["-c", program]),
+            Step::Run(commands) => output = run(Path::new("bash"), ["-euc", &commands.replace(URL, &url)]),
+            Step::Python(program) => output = run(Path::new(&python), ["-c", program]),
             Step::Compare(text) => {
                 assert!(output.contains(text), "{name} shows\n{text}the program\n{output}");
             }
