@@ -278,7 +278,7 @@ def written():
     return {**pages, "claims.md": claims_page(every)}
 
 
-# The parts of which one is computed again each night. Their scripts take up to an hour on two cores.
+# The parts of which one is computed again each night. Their scripts take from minutes to a few hours on two cores.
 TURNS = ["agreement", "scenes", "growing", "verdicts", "elastic_disk", "reproduction", "physics", "large_strains", "yielding_pin", "holders", "rig", "mesh_errors",
          "stability", "eigenvalues", "accuracy", "calibration_proof", "verification", "choices", "cost", "performance"]
 SCRIPT_OF = {"large_strains": "strains", "yielding_pin": "yielding", "calibration_proof": "calibration"}
