@@ -5,6 +5,7 @@ mod walk;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use yaml_rust2::{Yaml, YamlLoader};
 
 /// The folders whose files documents name by their path from the root of the repository.
 const ROOTS: [&str; 8] = [".ci", "benches", "docs", "migrations", "scripts", "src", "studies", "tests"];
@@ -318,4 +319,28 @@ fn pushes_run_the_check_with_the_pinned_compiler() {
         .collect();
     assert_eq!(compilers, BTreeSet::from([&*version]));
     assert!(github.contains("  push:\n  pull_request:\n") && github.contains(".ci/run\n"), "{github}");
+}
+
+/// Protects: both hosts can read their files: the script of each job is a list of texts. An unquoted command with a colon is none.
+#[test]
+fn pipelines_can_be_read() {
+    let parsed = |file: &str| {
+        let mut documents =
+            YamlLoader::load_from_str(&read(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+        documents.pop().unwrap_or_else(|| panic!("{file} is empty"))
+    };
+    let gitlab = parsed(".gitlab-ci.yml");
+    let scripts = gitlab.as_hash().unwrap().values().filter_map(|job| job["script"].as_vec());
+    let of_gitlab: Vec<&Yaml> = scripts.flatten().collect();
+    let github = parsed("scripts/ci/github.yml");
+    let steps = github["jobs"].as_hash().unwrap().values().filter_map(|job| job["steps"].as_vec());
+    let is_action = |step: &&Yaml| step["uses"].as_str().is_some();
+    let of_github: Vec<&Yaml> =
+        steps.flatten().filter(|step| !is_action(step)).map(|step| &step["run"]).collect();
+    for commands in [of_gitlab, of_github] {
+        assert!(commands.len() >= 10, "{commands:?}");
+        for command in commands {
+            assert!(command.as_str().is_some(), "{command:?}");
+        }
+    }
 }
