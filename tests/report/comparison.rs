@@ -72,6 +72,16 @@ fn measured_points_are_compared_with_the_study() {
     assert_eq!(unmatched(&rows), [one]);
     rows.pop();
     assert_eq!(unmatched(&rows), Vec::<String>::new());
+    // The points say nothing of a second study.
+    let mut second = rows[0].clone();
+    second.study = "second".to_owned();
+    rows.push(second);
+    assert_eq!(
+        unmatched(&rows),
+        [
+            "measured points are compared with simulated alone; name another study first to compare them with that one"
+        ]
+    );
 }
 
 /// Protects: a comparison begins with how far the simulation is from the measured values, in which direction, and where it agrees.

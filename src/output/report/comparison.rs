@@ -27,7 +27,7 @@ pub(super) struct Comparison {
     pub compared_squeals: usize,
     /// What a reader must know, one sentence each: inputs that differ, points without a counterpart.
     pub notes: Vec<String>,
-    /// Of each source none of whose points can be compared with the reference, a sentence.
+    /// What is not compared, one sentence each: points without a counterpart, and measured points with other studies than the first.
     pub unmatched: Vec<String>,
     /// The study that shows what could move a quantity, and what its parameters do to each quantity.
     pub movers: Option<Movers>,
@@ -111,6 +111,15 @@ impl Comparison {
             labels: names.iter().map(|name| layout.dimension(name).label.clone()).collect(),
             names: names.iter().map(|&name| name.to_owned()).collect(),
         };
+        let mut others = layout.sources.iter().skip(1);
+        if others.any(|source| source.is_measured)
+            && layout.sources.iter().skip(1).any(|source| !source.is_measured)
+        {
+            comparison.unmatched.push(format!(
+                "measured points are compared with {} alone; name another study first to compare them with that one",
+                comparison.reference
+            ));
+        }
         let x_axis = layout.x_axis();
         for (index, source) in layout.sources.iter().enumerate().skip(1) {
             let mut matches = Matches::default();

@@ -44,7 +44,7 @@ pub struct Written {
     pub verdicts: Vec<String>,
     /// Where only one of a source and the first source squeals: a head and lines; empty if nowhere.
     pub contradictions: Vec<String>,
-    /// Of each source none of whose points can be compared with the first source, a sentence.
+    /// What is not compared, one sentence each: points without a counterpart, and measured points with other studies than the first.
     pub unmatched: Vec<String>,
 }
 
