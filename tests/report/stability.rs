@@ -69,7 +69,7 @@ fn a_threshold_has_the_error_of_its_growth_rates() {
 fn modes_without_an_error_have_a_reason() {
     let mut points = [point(1.0, 0.1), point(1.0, 0.2)];
     let of = |points: &[StabilityPoint], count| unknown_errors(points, ShownModes { count, near_hz: None });
-    let alone = "Not every mesh error is known. Of 4 modes, 4 have no run on a coarser mesh.";
+    let alone = "No mesh error is known. Of 4 modes, 4 have no run on a coarser mesh.";
     assert_eq!(of(&points, 2).as_deref(), Some(alone));
     points[0].stands_alone = None;
     points[0].stability.modes[0].growth_rate_mesh_error_per_s = Some(10.0);

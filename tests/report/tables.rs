@@ -66,7 +66,7 @@ fn a_run_prints_what_is_known_of_its_errors() {
     let heads: Vec<&str> = text.lines().filter(|line| line.starts_with("# ")).collect();
     assert_eq!(heads, ["# t: macroscopic friction coefficient μ\\*", "# t: frequency [Hz]"]);
     let last = text.lines().last().expect("a line");
-    assert!(last.starts_with("- Mesh: the error of ") && last.contains("is unknown"), "{text}");
+    assert!(last.starts_with("- Mesh: the error of 8 of 14 jobs") && last.contains("is unknown"), "{text}");
     let stable: Vec<JobRow> =
         partial_study().into_iter().filter(|row| row.parameter("mu").as_f64() == Some(0.2)).collect();
     assert!(!tables::of_results(&stable, &View::default(), "t").contains("frequency"), "{text}");

@@ -200,7 +200,7 @@ pub static LIMITS: &[Limit] = &[
     not_negative("scene.holder.mass_kg", "a mass >= 0 kg"),
     not_negative("scene.holder.stiffness_x_n_m", STIFFNESS),
     not_negative("scene.holder.stiffness_y_n_m", STIFFNESS),
-    between("scene.holder.stiffness_z_n_m", At(0.0), At(0.0), "0 N/m, a mass that moves with the load: a spring in z would carry a part of the load"),
+    between("scene.holder.stiffness_z_n_m", At(0.0), At(0.0), "0 N/m (the mass rides on the pin) or no such field (nothing moves in z): a spring in z would carry a part of the load. Of an arm that is elastic in z, compare both"),
     not_negative("scene.holder.damping_x_n_s_m", DAMPER),
     not_negative("scene.holder.damping_y_n_s_m", DAMPER),
     not_negative("scene.holder.damping_z_n_s_m", DAMPER),

@@ -51,8 +51,14 @@ pub(super) fn of_mesh(rows: &[JobRow]) -> Vec<String> {
             0.0 => String::new(),
             hz => format!(" and of a frequency at most {} Hz", significant(hz, 2)),
         };
+        let known = records.len() - jobs_unknown;
+        let jobs = if jobs_unknown > 0 {
+            format!("where it is known ({known} of {}), ", count(records.len(), "job"))
+        } else {
+            String::new()
+        };
         sentences.push(format!(
-            "Mesh: the error of μ* is at most {}{of_frequency}. Such bounds are chosen to hold for 95 % of jobs.",
+            "Mesh: {jobs}the error of μ* is at most {}{of_frequency}. Such bounds are chosen to hold for 95 % of jobs.",
             significant(largest[0], 2)
         ));
     }

@@ -59,7 +59,8 @@ pub(super) fn found(analysis: &Analysis) -> Option<String> {
             along.near(onset.mu)
         ),
         None => format!(
-            "Steady sliding is unstable at the first point already (at {place}); the mode has {frequency}."
+            "Steady sliding is unstable at {} already, below which nothing is known (at {place}); the mode has {frequency}.",
+            along.near(onset.mu)
         ),
     })
 }

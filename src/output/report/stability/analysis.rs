@@ -2,7 +2,7 @@
 
 use super::along::Along;
 use super::onsets::{name_families, onsets_of};
-use super::ranges::{Edge, Interval, Known, Onset, Speed, intervals};
+use super::ranges::{Edge, Interval, Known, Onset, Speed, bracket_by_neighbours, intervals};
 use crate::analysis::ComplexMode;
 use crate::analysis::branches::{Sample, branches};
 use crate::publish::value;
@@ -140,6 +140,13 @@ impl<'a> Analysis<'a> {
                 if !first.is_converged {
                     words.push("not converged".to_owned());
                 }
+                if matches!(first.from, Edge::At(_)) && speed.lowest().is_some_and(|onset| !onset.is_followed)
+                {
+                    words.push(
+                        "the mode was not followed through its threshold, whose mesh error is not known"
+                            .to_owned(),
+                    );
+                }
             }
         }
         if !speed.without_modes.is_empty() {
@@ -178,8 +185,7 @@ impl<'a> Analysis<'a> {
         }
         if !unsure.is_empty() {
             let named: Vec<&str> = unsure.values().take(MOST_NAMED).map(String::as_str).collect();
-            let lost = value::count(unsure.len() as u32, "mode");
-            words.push(format!("{lost} could not be followed, perhaps to {}", named.join(", ")));
+            words.push(format!("perhaps the same mode, which could not be followed: {}", named.join(", ")));
         }
         words.join("; ")
     }
@@ -232,11 +238,12 @@ fn speed(omega: &Value, along: &Along, points: &[&StabilityPoint]) -> Speed {
     let branches = branches(&sorted.iter().map(sample).collect::<Vec<_>>());
     let mut onsets: Vec<Onset> =
         branches.iter().enumerate().flat_map(|(number, branch)| onsets_of(number, branch)).collect();
+    let leading: Vec<(f64, Option<ComplexMode>)> =
+        sorted.iter().map(|(at, point)| (*at, point.leading().copied())).collect();
+    bracket_by_neighbours(&mut onsets, &leading);
     onsets.sort_by(|a, b| a.mu.total_cmp(&b.mu).then(a.frequency_hz.total_cmp(&b.frequency_hz)));
     let without_modes = sorted.iter().filter(|(_, point)| point.stability.modes.is_empty());
     let without_modes = without_modes.map(|(at, _)| *at).collect();
-    let leading: Vec<(f64, Option<ComplexMode>)> =
-        sorted.iter().map(|(at, point)| (*at, point.leading().copied())).collect();
     let mut shared: Vec<f64> =
         sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| pair[0].0).collect();
     shared.dedup();
@@ -312,7 +319,7 @@ mod tests {
     /// one point, or if the first one has ceased to grow, it is another.
     #[test]
     fn a_lost_mode_is_no_further_one() {
-        let lost = "1 mode could not be followed, perhaps to 11 kHz from μ = 0.3";
+        let lost = "perhaps the same mode, which could not be followed: 11 kHz from μ = 0.3";
         let note = |points: &[(f64, &[(f64, f64)])]| {
             let points: Vec<StabilityPoint> =
                 points.iter().map(|(mu, modes)| point(1.0, *mu, modes)).collect();
@@ -327,13 +334,35 @@ mod tests {
         let both = of(&[(0.3, &[(11_000.0, 30.0), (10_000.0, 20.0)])]);
         assert_eq!(both, "1 more mode grows, too: 11 kHz from μ = 0.3");
         let other = of(&[(0.3, &[(10_000.0, -30.0)]), (0.4, &[(11_000.0, 30.0), (10_000.0, -40.0)])]);
-        assert_eq!(other, "1 more mode grows, too: 11 kHz from μ = 0.4");
+        assert_eq!(other, "1 more mode grows, too: 11 kHz from μ = 0.35");
         let beside = note(&[
             (0.1, &[(10_000.0, -10.0), (40_000.0, -10.0)]),
             (0.2, &[(10_000.0, 10.0), (40_000.0, 10.0)]),
             (0.3, &[(11_000.0, 30.0), (40_000.0, 30.0)]),
         ]);
         assert_eq!(beside, format!("1 more mode grows, too: 40 kHz from μ = 0.15; {lost}"));
+    }
+
+    /// Protects: a mode that is known from some point on, before which no mode grows, has its threshold between the two, and says that it was not followed. Beside another mode that grows, or at the smallest value, it has none.
+    #[test]
+    fn a_mode_that_appears_has_a_threshold() {
+        let points: Vec<StabilityPoint> = [
+            (0.1, &[(10_000.0, -10.0)][..]),
+            (0.2, &[(10_000.0, -10.0), (30_000.0, 30.0)][..]),
+            (0.3, &[(30_000.0, 40.0), (50_000.0, 10.0)][..]),
+        ]
+        .into_iter()
+        .map(|(mu, modes)| point(1.0, mu, modes))
+        .collect();
+        let along = Along::mu();
+        let rows = rows(&points, &along);
+        let found = Analysis::of(&points, &rows, &along, &View::DEFAULT);
+        let speed = &found.groups[0].speeds[0];
+        assert_eq!(speed.threshold_in_words(""), "0.125");
+        let known: Vec<_> =
+            speed.onsets.iter().map(|onset| (onset.below, onset.above, onset.is_followed)).collect();
+        assert_eq!(known, [(Some(0.1), 0.2, false), (None, 0.3, false)]);
+        assert!(found.note(speed).starts_with("the mode was not followed through its threshold"));
     }
 
     /// Protects: thresholds are those of the parameter that is varied, in a zip with all that move with it, and the table says so.

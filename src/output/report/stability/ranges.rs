@@ -33,10 +33,13 @@ pub(in crate::report) struct Onset {
     pub branch: usize,
     /// The threshold μ_c; the first μ at which the mode is known, if it grows there already.
     pub mu: f64,
-    /// The largest μ below with a point of the branch; none if the mode grows at its first point already.
+    /// The largest μ below with a point of the branch, or at which no mode grows; none if the mode grows at its first point already, and
+    /// another one, or nothing known, at the point before.
     pub below: Option<f64>,
     /// The smallest μ above with a point of the branch.
     pub above: f64,
+    /// Whether the branch has a point below.
+    pub is_followed: bool,
     /// Where it ceases to grow; none if it still grows at the last point.
     pub ends: Option<Crossing>,
     /// Its frequency \[Hz\] there.
@@ -121,6 +124,27 @@ pub(in crate::report) struct Crossing {
     pub at: f64,
     pub below: f64,
     pub above: f64,
+}
+
+/// Gives the thresholds of modes that were not followed through them: no mode grows at the point before the first one of the branch. The
+/// threshold is where a line through the growth rates of the leading modes is zero.
+pub(super) fn bracket_by_neighbours(onsets: &mut [Onset], leading: &[(f64, Option<ComplexMode>)]) {
+    for onset in onsets.iter_mut().filter(|onset| onset.below.is_none()) {
+        let Some(index) = leading.iter().position(|(at, _)| *at == onset.above) else { continue };
+        let Some((below, Some(stable))) = index.checked_sub(1).map(|before| leading[before]) else {
+            continue;
+        };
+        let (from, Some(to)) =
+            (stable.growth_rate_per_s, leading[index].1.map(|mode| mode.growth_rate_per_s))
+        else {
+            continue;
+        };
+        if from < 0.0 && to >= 0.0 {
+            onset.mu = below + (onset.above - below) * from / (from - to);
+            onset.below = Some(below);
+            onset.is_converged &= stable.is_converged;
+        }
+    }
 }
 
 /// The ranges in which sliding is unstable: where the leading mode of the points grows. Between two points of which one is unstable
@@ -288,6 +312,7 @@ mod tests {
     fn branches_say_where_a_range_ends() {
         let crossing = |at| Crossing { at, below: 1.0, above: 2.0 };
         let onset = |mu, ends| Onset {
+            is_followed: true,
             branch: 0,
             mu,
             below: Some(0.0),

@@ -110,13 +110,14 @@ pub fn unknown_errors<'a>(
         }
         all += shown.len();
     }
+    let unknown: usize = reasons.values().sum();
+    let none = if unknown == all { "No mesh error is known." } else { "Not every mesh error is known." };
     let reasons: Vec<String> = reasons
         .into_iter()
         .map(|(what, count)| format!("{count} {} {what}", if count == 1 { "has" } else { "have" }))
         .collect();
     let all = value::count(all, "mode");
-    (!reasons.is_empty())
-        .then(|| format!("Not every mesh error is known. Of {all}, {}.", reasons.join(", and ")))
+    (!reasons.is_empty()).then(|| format!("{none} Of {all}, {}.", reasons.join(", and ")))
 }
 
 /// A series of points along the parameter of the thresholds, with the other parameters, and a range in which a mode grows.
@@ -142,9 +143,9 @@ fn of_range<'a>(along: &str) -> [Column<Range<'a>>; 11] {
         Column::made(Head::new(format!("{along}_{end}"), name_and_unit(along).1, meaning), read)
     };
     [
-        edge("c", format!("{symbol} at which the mode begins to grow; empty if it grows at the smallest {symbol} already, or at none"), |of| of.read(|onset| onset.below.map(|_| onset.mu))),
+        edge("c", format!("{symbol} at which the mode begins to grow; empty if it grows at the first {symbol} at which it is known already, or at none"), |of| of.read(|onset| onset.below.map(|_| onset.mu))),
         edge("c_mesh_error", format!("bound of the error of {symbol} there that the mesh makes; empty if it is unknown"), |of| of.read(|onset| onset.mesh_error)),
-        edge("below", format!("largest {symbol} below; of a series without a mode that grows, the largest one"), |of| of.last.map_or_else(|| of.read(|onset| onset.below), Value::from)),
+        edge("below", format!("largest {symbol} below at which it decays or is not there; of a series without a mode that grows, the largest one"), |of| of.last.map_or_else(|| of.read(|onset| onset.below), Value::from)),
         edge("above", format!("smallest {symbol} above"), |of| of.read(|onset| Some(onset.above))),
         edge("end", format!("{symbol} at which the mode ceases to grow; empty if it still grows at its last point"), |of| of.read(|onset| onset.ends.map(|ends| ends.at))),
         edge("end_below", format!("largest {symbol} below that"), |of| of.read(|onset| onset.ends.map(|ends| ends.below))),
