@@ -69,7 +69,7 @@ CLAIMS = [
     ("rig", "A rig from the literature squeals here, {0} % too high on the mesh of full elements.", r"the last mesh above is ([\d.]+) % too high in frequency"),
     ("growing", "A grid that finds as much as `studies/refine.json` has {0} times as many jobs.", r"\*\*([\d.]+) times as many\*\*"),
     ("calibration_proof", "In {1} of {0} synthetic experiments the truth is inside the region.", r"given (\d+) synthetic experiments\. \*\*The truth was inside the region in (\d+) of them"),
-    ("performance", "The settings of the presets solve `figure7` {0} times as fast as the defaults (β_R = 50 ns).", r"nested start, eigenvalues: the presets \| \d+ \| ([\d.]+) \|"),
+    ("performance", "The settings of the presets solve `figure7` {0} times as fast as the defaults.", r"nested start, eigenvalues: the presets \| \d+ \| ([\d.]+) \|"),
     ("cost", "{0} of {1} studies took a time within their first forecast.", r"The times of (\d+) of (\d+) studies lie in their predicted ranges"),
 ]
 # Pages for users that repeat numbers of a claim: the page, the claim by its part and its place there, the places of the numbers in it (of several
