@@ -120,7 +120,7 @@ fn an_accuracy_is_reached_or_not() {
     for (mu_star, finest, elements, reached) in [(0.2, 48, "24", "true"), (1.0e-4, 24, "24", "false")] {
         let folder = Folder::with("mine", &asking(mu_star, finest));
         let run = folder.command("run mine.json").assert().code(0);
-        let warning = "warning: in 2 jobs the accuracy that is asked for is not reached";
+        let warning = "warning: in 2 jobs (the first one at ω = 10 rpm";
         assert_eq!(stderr(&run).contains(warning), reached == "false", "{}", stderr(&run));
         for row in rows(&folder.ok("export mine --all")) {
             assert_eq!(

@@ -53,6 +53,15 @@ fn points_without_a_counterpart_are_said_at_once() {
     }
 }
 
+/// Protects: a file of measured points that is not there is what the command complains about, even if there is no database either.
+#[test]
+fn a_missing_file_is_named_first() {
+    let folder = Folder::new();
+    let run = folder.command("report mine --data missing.csv").assert().failure();
+    assert!(stderr(&run).contains("missing.csv"), "{}", stderr(&run));
+    assert_eq!(folder.files(), [""; 0]);
+}
+
 /// Protects: axes are those of the command line, then those of the study, and an unknown name or file is refused with advice.
 #[test]
 fn axes_are_those_that_were_asked_for() {

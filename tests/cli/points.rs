@@ -76,7 +76,12 @@ fn a_grid_has_exact_indices() {
     let folder = Folder::with("mine", &study);
     folder.ok("run mine.json");
     let text = folder.ok("sensitivity mine --of mu_star");
-    assert!(text.contains("Exact on this grid of 4 × 3 points, each of which counts the same."), "{text}");
+    assert!(
+        text.contains(
+            "On this grid of 4 × 3 points, each of which counts the same, the indices have no sampling error."
+        ),
+        "{text}"
+    );
     assert!(!text.contains("without effect could") && !text.contains('…'), "{text}");
     let export = rows(&folder.ok("export mine"));
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;

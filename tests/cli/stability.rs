@@ -97,6 +97,17 @@ fn modes_of_a_study_in_one_command() {
     // One mode that decays stands beside all that grow, and what is not known is said.
     let run = folder.command("stability study.json --modes 1 --near 20kHz --json").assert().code(0);
     assert!(stderr(&run).contains("may be nearer to this frequency"), "{}", stderr(&run));
+    let said = folder.ok("stability study.json --modes 1 --near 20kHz");
+    let grows_near = |row: &&Value| {
+        of(row, "growth_rate_per_s") >= 0.0 && (of(row, "frequency_hz") - 2.0e4).abs() <= 2.0e3
+    };
+    let places: Vec<_> = near.iter().filter(grows_near).map(|row| (place(row).0, place(row).1)).collect();
+    let places = places.iter().enumerate().filter(|(at, own)| !places[..*at].contains(own)).count();
+    let expected = match places {
+        0 => "No known mode within 10 % of 20 kHz grows at any of 4 points of the grid.".to_owned(),
+        some => format!("A mode within 10 % of 20 kHz grows at {some} of 4 points of the grid."),
+    };
+    assert!(said.contains(&expected), "{expected} {said}");
     let few = stdout(&run).lines().count();
     let growing = near.iter().filter(|row| of(row, "growth_rate_per_s") >= 0.0).count();
     assert_eq!(few, growing + 4, "{growing} modes grow at four points");

@@ -250,6 +250,9 @@ fn a_point_of_unknown_friction_is_compared_with_every_curve() {
     assert_eq!(read("mu_star.svg").matches("data-job").count(), 7);
     assert_eq!(read("regime_map.svg").matches("data-job").count(), 6);
     assert!(read("report.md").contains("0.250 ± 0.010"), "{}", read("report.md"));
+    // 0.21 is 16 % below 0.25, and 0.31 is 24 % above it.
+    let nearest = "Of 2 curves, μ = 0.3, simulated is the nearest by the mean square: −16 %.";
+    assert!(read("report.md").contains(nearest), "{}", read("report.md"));
     assert!(read("report.md").contains("jobs done: 6 of 6"), "a measured point is no job");
 }
 

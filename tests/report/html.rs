@@ -369,10 +369,14 @@ fn doubtful_results_are_listed() {
     ];
     let warnings = trouble::warnings(&rows);
     let [balances, hops] = &warnings[..] else { panic!("{warnings:?}") };
-    assert!(balances.starts_with("in 2 jobs a residual is above 0.01"), "{balances}");
-    assert!(hops.starts_with("in 1 job the pin hops"), "{hops}");
+    assert!(
+        balances.starts_with("in 2 jobs (the first one at ω = 4 rpm, μ = 0.4) a residual is above 0.01"),
+        "{balances}"
+    );
+    assert!(hops.starts_with("in the job at ω = 3 rpm, μ = 0.4 the pin hops"), "{hops}");
     let found = text(&page(&rows));
     for part in [
+        "Doubt the results of 3 of 6 jobs: a residual is large (2), the pin hops (1).",
         "Large residuals (2)",
         "the identities of the window have a residual of 0.15",
         "the energies of the run have a residual of 0.02, and the identities of the window have a residual of 0.03",
@@ -408,7 +412,10 @@ fn jobs_that_are_not_accurate_are_listed() {
     ] {
         assert!(found.contains(part), "{part}: {found}");
     }
-    assert!(trouble::warnings(&mixed)[0].starts_with("in 2 jobs the accuracy"));
+    assert!(
+        trouble::warnings(&mixed)[0]
+            .starts_with("in 2 jobs (the first one at ω = 3 rpm, μ = 0.4) the accuracy")
+    );
     let all = text_of(&mixed[..1]);
     assert!(all.contains("reached in all jobs that ask (1 job)") && !all.contains("Accuracy not"), "{all}");
     assert_eq!(trouble::warnings(&mixed[..1]), Vec::<String>::new());

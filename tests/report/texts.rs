@@ -5,9 +5,10 @@
 use crate::synthetic::{after, partial_study, periodic, report, row};
 use expect_test::{expect, expect_file};
 use std::fs;
+use tribosweep_mechanics::analysis::Outcome;
 use tribosweep_output::report::overview::overview;
 use tribosweep_output::report::sensitivity::{markdown, sensitivities};
-use tribosweep_output::report::{JobRow, Scalar, write};
+use tribosweep_output::report::{JobRow, RowState, Scalar, write};
 
 /// Protects: the words of a report, in their order, for a study in progress that has every kind of job.
 #[test]
@@ -58,7 +59,7 @@ fn indices_read_well() {
         | mu        | 0.990       | 0.990 | 0.625 |
         | omega_rpm | 0.010       | 0.010 | 0.156 |
 
-        - Exact on this grid of 4 × 4 points, each of which counts the same.
+        - On this grid of 4 × 4 points, each of which counts the same, the indices have no sampling error.
 
         ## regime: 16 points
 
@@ -67,7 +68,16 @@ fn indices_read_well() {
         | mu        | 0.000  |
         | omega_rpm | 0.000  |
 
-        - Exact on this grid of 4 × 4 points, each of which counts the same.
+        - On this grid of 4 × 4 points, each of which counts the same, the indices have no sampling error.
     "#]]
     .assert_eq(&markdown(&found));
+
+    // A mean over no whole number of cycles counts, and this is said.
+    let mut doubtful = rows;
+    let RowState::Done(record) = &mut doubtful[0].state else { panic!("a result") };
+    record.outcome = Outcome::NotPeriodic;
+    let found = sensitivities(&doubtful, &[Scalar::find("mu_star").unwrap()], false);
+    let words = markdown(&found);
+    let said = "Doubt the results of 1 of 16 jobs: the motion is not periodic (1). They count here.";
+    assert_eq!(words.matches(said).count(), 2, "{words}");
 }

@@ -118,6 +118,14 @@ fn messages_name_the_place() {
     }
     let error = refused(FILE, &changes(Some(Preset::Draft), &[("preset", "draft")]));
     assert_contains(&error, &["--set: preset = draft: preset is already set"]);
+    for (text, list) in [
+        ("[100 rpm, 300 rpm]", r#"a list is ["100 rpm", "300 rpm"]"#),
+        ("[7,20", "a list is [7, 20]"),
+        ("[.2, +3,]", "a list is [0.2, 3]"),
+    ] {
+        let error = refused(FILE, &changes(None, &[("omega_rpm", text)]));
+        assert_contains(&error, &["expected a number", list]);
+    }
     let meshes = r#"{ "grid": { "elements": [[4, 4, 4], [6, 6, 6]] } }"#;
     assert_contains(
         &refused(meshes, &changes(None, &[("nx", "5")])),

@@ -125,6 +125,18 @@ impl History {
         })
     }
 
+    /// Runs that nothing measured rules out, of those that have at least half as many values as the most.
+    pub fn runs_that_fit(&self) -> usize {
+        let fits: Vec<Fit> = self.runs.iter().map(|run| self.of_run(run)).collect();
+        let most = fits.iter().map(|fit| fit.compared).max().unwrap_or(0);
+        fits.iter().filter(|fit| 2 * fit.compared >= most && !self.is_ruled_out(fit)).count()
+    }
+
+    /// Whether a run is too far from a measured value, or in another state.
+    pub fn is_ruled_out(&self, fit: &Fit) -> bool {
+        fit.other_state > 0 || fit.largest > self.cutoff()
+    }
+
     /// Whether the runs around a place squeal and slide steadily where it was measured which of the two.
     pub(super) fn is_disputed(&self, place: &[f64]) -> bool {
         let is_so = |(states, target): (&States, &Target)| {

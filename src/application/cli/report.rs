@@ -10,6 +10,7 @@ use crate::report::trouble;
 use crate::study::Spacing;
 use crate::sweep::{self, MOST_BINS, Purpose, ReportContent, ReportRequest, Revision};
 use crate::worker::Interrupt;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -147,6 +148,10 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     if args.sensitivity.is_some() && request.studies.len() + request.data.len() < 2 {
         let message = "--sensitivity: expected something to compare with: --data FILE, or a second study";
         return Err(CliError::Usage(message.to_owned()));
+    }
+    // Who mistypes a file's name wants to hear of it, whatever is in the database.
+    for path in &args.data {
+        fs::metadata(path).map_err(|source| CliError::file(path, source))?;
     }
     let folder = OutFolder { folder: args.out.folder.clone() }.of(&request.folder_name());
     sweep::with_queue(db, Purpose::Read, async |queue| {

@@ -15,8 +15,8 @@ use crate::publish::table::Format;
 use crate::publish::value::significant;
 use crate::queue::{Location, Shard};
 use crate::report::{
-    Along, MODE_NUMBER, SHAPES, STABILITY_PAGE, ShownModes, StabilityPoint, modes_table, thresholds_table,
-    unknown_errors,
+    Along, MODE_NUMBER, SHAPES, STABILITY_PAGE, ShownModes, StabilityPoint, modes_table, nearest_in_words,
+    thresholds_table, unknown_errors,
 };
 use crate::study::number_in;
 use crate::sweep::Plan;
@@ -108,7 +108,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             if !constant.is_empty() {
                 print(&format!("In all lines: {}.\n", constant.join(", ")))?;
             }
-            if let Some(note) = unknown_errors(on_the_grid(), modes) {
+            let near = args.near.and_then(|near_hz| nearest_in_words(on_the_grid(), near_hz));
+            for note in near.into_iter().chain(unknown_errors(on_the_grid(), modes)) {
                 print(&format!("{note}\n"))?;
             }
             if wanted.is_some() && !points.is_empty() {

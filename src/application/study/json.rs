@@ -156,6 +156,19 @@ fn same_shape(value: &Value, template: &Value, path: &str, found: &mut Vec<TypeM
     }
 }
 
+/// An entry of a list as JSON has it: a number, or a number with a unit in quotes; `None` if it is neither.
+fn entry_of_list(text: &str) -> Option<String> {
+    let text = text.trim().trim_matches('"');
+    if let Ok(number) = text.parse() {
+        let number = serde_json::Number::from_f64(number)?.to_string();
+        return Some(number.trim_end_matches(".0").to_owned());
+    }
+    let unit_at = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE ".contains(c)))?;
+    let (number, unit) = text.split_at(unit_at);
+    let has_one_number = number.trim().parse::<f64>().is_ok_and(f64::is_finite) && !unit.contains(' ');
+    has_one_number.then(|| format!("\"{text}\""))
+}
+
 /// What to write instead of a text where a number is expected; none if the text says nothing about that.
 pub(super) fn number_hint(text: &str) -> Option<String> {
     let text = text.trim();
@@ -168,6 +181,12 @@ pub(super) fn number_hint(text: &str) -> Option<String> {
         Err(_) => {}
     }
     let is_number = |part: &str| part.trim().parse::<f64>().is_ok();
+    if let Some(inner) = text.strip_prefix('[') {
+        // JSON that cannot be read arrives as a text: units without quotes, or a bracket that is not closed.
+        let inner = inner.trim_end_matches(']').trim().trim_end_matches([',', ';']);
+        let entries: Option<Vec<String>> = inner.split([',', ';']).map(entry_of_list).collect();
+        return Some(format!("a list is [{}]", entries?.join(", ")));
+    }
     let parts: Vec<&str> = text.split([',', ';']).collect();
     if let [whole, fraction] = parts[..]
         && text.contains(',')

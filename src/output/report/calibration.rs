@@ -25,6 +25,8 @@ pub struct Calibration {
     pub jobs: usize,
     /// The run that fits best; none if none has a result.
     pub best: Option<Fit>,
+    /// Runs that nothing measured rules out.
+    pub runs_that_fit: usize,
     /// If everything is ruled out: the place that is least implausible, by the emulators.
     pub nearest: Option<Nearest>,
     /// Pairs of parameters by their numbers, with their correlations inside the region.
@@ -244,21 +246,29 @@ impl Calibration {
                     "Too few runs have a result for an emulator, so their values rule out nothing yet."
                         .to_owned(),
                 );
+            } else if self.runs_that_fit == 0 {
+                // An interval that no run has confirmed is not to be taken for a result.
+                words.push(
+                    "No run agrees with all data yet, so this region is only what emulators expect between the runs. More points would show \
+                     whether a run does."
+                        .to_owned(),
+                );
             } else if !self.is_known {
                 words.push("More points would make the region smaller.".to_owned());
             }
         }
+        let verb = if self.runs_that_fit > 0 { "lies" } else { "could lie" };
         for free in &self.free {
             let Some([low, high]) = free.region else { continue };
             words.push(if free.left >= NOTHING_SAID {
                 format!(
-                    "They say nearly nothing about {}: {} % of its range is left.",
+                    "The data say nearly nothing about {}: {} % of its range is left.",
                     free.name,
                     value::fixed(100.0 * free.left, 0)
                 )
             } else {
                 let [low, high] = [low, high].map(|x| in_words(&free.name, &rounded(x)));
-                format!("{} lies between {low} and {high}.", free.name)
+                format!("{} {verb} between {low} and {high}.", free.name)
             });
         }
         for ([a, b], correlation) in &self.correlations {
@@ -266,7 +276,7 @@ impl Calibration {
                 let [a, b] = [a, b].map(|at| &self.free[*at].name);
                 let way = if *correlation > 0.0 { "a larger" } else { "a smaller" };
                 words.push(format!(
-                    "They do not tell {a} and {b} apart: a larger {a} with {way} {b} explains them as well (correlation {}).",
+                    "The data do not tell {a} and {b} apart: a larger {a} with {way} {b} explains them as well (correlation {}).",
                     value::fixed(*correlation, 2)
                 ));
             }
@@ -320,11 +330,8 @@ impl Calibration {
                 value::significant(best.root_mean_square, 2)
             )
         };
-        let is_out = if best.is_ruled_out && self.nearest.is_none() {
-            " That run is ruled out, too: no run lies in the region yet. More points would add one."
-        } else {
-            ""
-        };
+        let is_out =
+            if best.is_ruled_out && self.nearest.is_none() { " It is ruled out itself." } else { "" };
         format!("The best run, {point}, {distance}{other}.{is_out}")
     }
 
@@ -395,4 +402,33 @@ pub(super) const TITLE: &str = "pairs of the free parameters that are not ruled 
 /// A value of a parameter for a reader.
 fn rounded(x: f64) -> Value {
     value::significant_number(x, 4)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: an interval that no run has confirmed is not said to have the value.
+    #[test]
+    fn a_region_without_a_run_is_an_expectation() {
+        let free = Free { name: "mu".to_owned(), region: Some([0.2, 0.3]), left: 0.1, ..Free::default() };
+        let of = |runs_that_fit| {
+            let own = Calibration {
+                free: vec![free.clone()],
+                points: 20,
+                jobs: 60,
+                share: 0.1,
+                runs_that_fit,
+                ..Calibration::default()
+            };
+            own.in_words().join("\n")
+        };
+        let (without, with) = (of(0), of(2));
+        assert!(
+            without.contains("No run agrees with all data yet")
+                && without.contains("mu could lie between 0.2 and 0.3."),
+            "{without}"
+        );
+        assert!(!with.contains("No run agrees") && with.contains("mu lies between 0.2 and 0.3."), "{with}");
+    }
 }

@@ -70,8 +70,8 @@ pub use provenance::{Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};
 pub use scalar::{FREQUENCY, MU_STAR, SCALARS, Scalar};
 pub use stability::{
-    Along, MODE_NUMBER, PAGE as STABILITY_PAGE, SHAPES, ShownModes, modes_table, thresholds_table,
-    unknown_errors, write_stability,
+    Along, MODE_NUMBER, PAGE as STABILITY_PAGE, SHAPES, ShownModes, modes_table, nearest_in_words,
+    thresholds_table, unknown_errors, write_stability,
 };
 pub use stability_point::StabilityPoint;
 pub use view::View;

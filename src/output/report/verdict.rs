@@ -64,7 +64,7 @@ impl Comparison {
         let what = first.scalar.words();
         let range = match deviations.len() {
             1 => String::new(),
-            _ => format!(" ({} to {})", signed(least), signed(most)),
+            _ => format!(" ({})", range_in_words(&deviations)?),
         };
         if !judged.is_empty() && within == judged.len() && judged.len() == deviations.len() {
             return Some(format!(
@@ -92,7 +92,8 @@ impl Comparison {
         };
         let one_way = least > 0.0 || most < 0.0;
         let moved = one_way.then(|| self.moved_by(first, middle, own)).flatten().unwrap_or_default();
-        Some(format!("{what}: {deviates}{errors}.{moved}"))
+        let nearest = nearest_curve(part).unwrap_or_default();
+        Some(format!("{what}: {deviates}{errors}.{moved}{nearest}"))
     }
 
     /// The parameters that could bring a quantity nearer, in a sentence. `deviation` is how far it is away.
@@ -136,6 +137,35 @@ impl Comparison {
                 )
             }
         })
+    }
+}
+
+/// Of several curves that the same measured points are compared with, such as those of several μ, the one that is nearest, in a sentence. The
+/// differences of a curve follow each other.
+fn nearest_curve(part: &[Difference]) -> Option<String> {
+    let curves: Vec<&[Difference]> = part.chunk_by(|a, b| a.curve == b.curve).collect();
+    // Points of known friction have a curve of their own, and then the curves are no alternatives.
+    let points = |own: &[Difference]| own.iter().map(|one| one.value).collect::<Vec<_>>();
+    let are_alternatives = curves.len() > 1 && curves.iter().all(|own| points(own) == points(curves[0]));
+    if !are_alternatives || !part[0].is_measured {
+        return None;
+    }
+    let deviations = |own: &[Difference]| own.iter().filter_map(Difference::deviation).collect::<Vec<_>>();
+    let size = |own: &[Difference]| deviations(own).iter().map(|share| share.powi(2)).sum::<f64>();
+    let nearest = curves.iter().min_by(|a, b| size(a).total_cmp(&size(b)))?;
+    let mut shares = deviations(nearest);
+    shares.sort_by(f64::total_cmp);
+    let range = range_in_words(&shares)?;
+    let of = curves.len();
+    Some(format!(" Of {of} curves, {} is the nearest by the mean square: {range}.", nearest[0].curve))
+}
+
+/// The smallest and the largest of deviations in ascending order; `None` without any.
+fn range_in_words(ascending: &[f64]) -> Option<String> {
+    match ascending {
+        [] => None,
+        [only] => Some(signed(*only)),
+        [least, .., most] => Some(format!("{} to {}", signed(*least), signed(*most))),
     }
 }
 

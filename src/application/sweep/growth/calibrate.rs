@@ -242,6 +242,7 @@ impl<'a> Known<'a> {
             points: points.len(),
             jobs: rows.len(),
             best: best.map(|(_, fit)| fit),
+            runs_that_fit: history.runs_that_fit(),
             nearest,
             correlations: pairs.map(|[a, b]| ([a, b], region.correlation(a, b))).collect(),
             inside: region.inside.iter().step_by(step).map(|own| self.values(&own.place)).collect(),
@@ -265,7 +266,7 @@ impl<'a> Known<'a> {
             root_mean_square: (own.square_sum / own.compared.max(1) as f64).sqrt(),
             compared: own.compared,
             other_state: own.other_state,
-            is_ruled_out: own.other_state > 0 || own.largest > self.history.cutoff(),
+            is_ruled_out: self.history.is_ruled_out(&own),
         };
         Some((run, fit))
     }

@@ -13,6 +13,7 @@ use crate::report::row::JobRow;
 use crate::report::scalar::{FREQUENCY, MU_STAR};
 use crate::report::summary::{self, Summary};
 use crate::report::tooltip::residual_text;
+use crate::report::trouble::doubts_in_words;
 use std::f64::consts::PI;
 
 /// What comes before the links to sections.
@@ -39,10 +40,16 @@ fn found(parts: &Parts) -> Vec<String> {
     let threshold = parts.stability.and_then(|(analysis, _)| stability::found(analysis));
     let of_source = |name: &str| {
         let own: Vec<&JobRow> = rows.iter().filter(|row| row.study == name).collect();
-        let words: Vec<String> = [friction(&own), frequencies(&own), damping(&own), not_solved(&own)]
-            .into_iter()
-            .flatten()
-            .collect();
+        let words: Vec<String> = [
+            friction(&own),
+            frequencies(&own),
+            damping(&own),
+            not_solved(&own),
+            doubts_in_words(own.iter().copied(), false),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
         let prefix = if sources.len() > 1 { format!("{name}: ") } else { String::new() };
         (!words.is_empty()).then(|| prefix + &words.join(" "))
     };

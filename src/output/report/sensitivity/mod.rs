@@ -16,6 +16,7 @@ pub use types::{Index, Indices, REGIME, Sensitivity};
 use super::parameters::{head, parameter_names};
 use super::row::{JobRow, RowState};
 use super::scalar::Scalar;
+use super::trouble::doubts_in_words;
 use crate::publish::table::{Column, Head, Table};
 use crate::publish::value;
 use crate::random::SplitMix64;
@@ -122,7 +123,7 @@ impl Points<'_> {
             self.rows.iter().enumerate().filter_map(|(at, row)| Some((at, scalar.value(row)?))).collect();
         let y: Vec<f64> = with_value.iter().map(|(_, y)| *y).collect();
         let basis = self.basis(with_value.iter().map(|(at, _)| *at).collect());
-        let mut remarks = Vec::new();
+        let mut remarks: Vec<String> = self.doubtful(&basis.points).into_iter().collect();
         let last = |slices: &[Vec<usize>], points: &[usize]| {
             let own: Vec<f64> = points.iter().map(|&at| y[at]).collect();
             pawn(slices, &own)
@@ -167,6 +168,12 @@ impl Points<'_> {
         }
     }
 
+    /// Which results count although they should be doubted, in a sentence; `None` if there are none.
+    fn doubtful(&self, points: &[usize]) -> Option<String> {
+        let words = doubts_in_words(points.iter().map(|&at| self.rows[at]), true)?;
+        Some(format!("{words} They count here."))
+    }
+
     fn of_regimes(&self) -> Sensitivity {
         let mut names: BTreeMap<&str, usize> = BTreeMap::new();
         let class = |row: &&JobRow| row.record().map_or("failed", |record| record.regime.name());
@@ -177,7 +184,7 @@ impl Points<'_> {
         }
         let class: Vec<usize> = classes.iter().map(|name| names[name]).collect();
         let basis = self.basis((0..class.len()).collect());
-        let mut remarks = Vec::new();
+        let mut remarks: Vec<String> = self.doubtful(&basis.points).into_iter().collect();
         let last = |slices: &[Vec<usize>], points: &[usize]| {
             let own: Vec<usize> = points.iter().map(|&at| class[at]).collect();
             of_classes(slices, &own, names.len())

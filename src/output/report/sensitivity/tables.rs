@@ -88,7 +88,7 @@ impl Sensitivity {
         match &self.design {
             Design::Grid(sizes) => {
                 let sizes = sizes.iter().map(usize::to_string).collect::<Vec<_>>().join(" × ");
-                notes.push(format!("Exact on this grid of {sizes} points, each of which counts the same."));
+                notes.push(format!("On this grid of {sizes} points, each of which counts the same, the indices have no sampling error."));
             }
             Design::Unknown(why) => {
                 let first_order = if is_regime { "" } else { " and no first-order index" };

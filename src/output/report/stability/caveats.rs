@@ -27,7 +27,7 @@ pub(in crate::report) fn above_band(points: &[StabilityPoint]) -> Option<String>
         };
         let heard = if low >= HEARD_HZ { " (not audible)" } else { "" };
         format!(
-            "Above {band}{heard} no modes were looked for{at}: a mode may grow there. Below it, all modes were looked for."
+            "Above {band}{heard} no modes were looked for{at}: a mode may grow there. Below it, all modes were looked for, and the fastest growing ones are kept."
         )
     })
 }
@@ -74,7 +74,7 @@ mod tests {
             let open = bands.iter().map(|&band_hz| point(band_hz, AboveBand::NotLookedAt, 9, 0));
             above_band(&open.collect::<Vec<_>>()).unwrap()
         };
-        let all = "Above 50 kHz (not audible) no modes were looked for: a mode may grow there. Below it, all modes were looked for.";
+        let all = "Above 50 kHz (not audible) no modes were looked for: a mode may grow there. Below it, all modes were looked for, and the fastest growing ones are kept.";
         assert_eq!(of(&[5.0e4, 5.0e4]), all);
         assert_eq!(of(&[1.0e4]), all.replace("50 kHz (not audible)", "10 kHz"));
         let two = of(&[5.0e4, 5.5e4]);

@@ -3,13 +3,16 @@
 use crate::analysis::{JobRecord, Outcome, PlasticFlow};
 use crate::publish::value::{count, significant};
 use crate::report::row::JobRow;
+use crate::report::words::parameters_in_words;
 
 /// A reason to doubt a result.
 #[derive(Debug)]
 pub struct Doubt {
     /// The heading of the jobs that have it.
     pub heading: &'static str,
-    /// What is so in a job that has it, for a warning.
+    /// What is so in a job that has it, in a few words.
+    briefly: &'static str,
+    /// The same for a warning.
     what: &'static str,
     /// Why a job has it, with its numbers; `None` if it does not have it.
     pub why: fn(&JobRow) -> Option<String>,
@@ -19,33 +22,71 @@ pub struct Doubt {
 pub static DOUBTS: [Doubt; 4] = [
     Doubt {
         heading: "Accuracy not reached",
+        briefly: "the accuracy is not reached",
         what: "the accuracy that is asked for is not reached, also on the finest mesh",
         why: not_accurate,
     },
     Doubt {
         heading: "Still yielding",
+        briefly: "the material goes on yielding",
         what: "the material goes on yielding within the averaging window (column plastic_share)",
         why: yields,
     },
     Doubt {
         heading: "Large residuals",
+        briefly: "a residual is large",
         what: "a residual is above 0.01 (columns energy_residual and identity_residual): do not use the means",
         why: does_not_close,
     },
     Doubt {
         heading: "The pin hops",
+        briefly: "the pin hops",
         what: "the pin hops: its normal force goes from nothing to more than ten times the load (columns n_over_f_min and n_over_f_max)",
         why: hops,
     },
 ];
 
+impl Doubt {
+    fn jobs<'a>(&self, rows: impl IntoIterator<Item = &'a JobRow>) -> Vec<&'a JobRow> {
+        rows.into_iter().filter(|row| (self.why)(row).is_some()).collect()
+    }
+}
+
 /// A warning for each reason that some jobs have.
 pub fn warnings(rows: &[JobRow]) -> Vec<String> {
     let warning = |doubt: &Doubt| {
-        let jobs = rows.iter().filter(|row| (doubt.why)(row).is_some()).count();
-        (jobs > 0).then(|| format!("in {} {}", count(jobs, "job"), doubt.what))
+        let jobs = doubt.jobs(rows);
+        let first = jobs.first()?;
+        let has_several_studies = rows.iter().any(|row| row.study != first.study);
+        let of_study = if has_several_studies { format!(" of {}", first.study) } else { String::new() };
+        let place = parameters_in_words(first) + &of_study;
+        Some(match jobs.len() {
+            1 => format!("in the job at {place} {}", doubt.what),
+            several => format!("in {several} jobs (the first one at {place}) {}", doubt.what),
+        })
     };
     DOUBTS.iter().filter_map(warning).collect()
+}
+
+/// How many jobs should be doubted and why, in a sentence; `None` if there are none. `open` says that jobs without a period count, too.
+pub(in crate::report) fn in_words<'a>(
+    rows: impl IntoIterator<Item = &'a JobRow>,
+    open: bool,
+) -> Option<String> {
+    let rows: Vec<&JobRow> = rows.into_iter().filter(|row| row.record().is_some()).collect();
+    let is_open =
+        |row: &JobRow| open && row.record().is_some_and(|record| record.outcome == Outcome::NotPeriodic);
+    let is_doubted = |row: &&&JobRow| is_open(row) || DOUBTS.iter().any(|doubt| (doubt.why)(row).is_some());
+    let doubted = rows.iter().filter(is_doubted).count();
+    let not_periodic = ("the motion is not periodic", rows.iter().filter(|row| is_open(row)).count());
+    let of_doubts = DOUBTS.iter().map(|doubt| (doubt.briefly, doubt.jobs(rows.iter().copied()).len()));
+    let why: Vec<String> = std::iter::once(not_periodic)
+        .chain(of_doubts)
+        .filter(|(_, jobs)| *jobs > 0)
+        .map(|(what, jobs)| format!("{what} ({jobs})"))
+        .collect();
+    let of = count(rows.len(), "job");
+    (doubted > 0).then(|| format!("Doubt the results of {doubted} of {of}: {}.", why.join(", ")))
 }
 
 fn not_accurate(row: &JobRow) -> Option<String> {

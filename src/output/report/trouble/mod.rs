@@ -8,6 +8,7 @@ mod doubt;
 mod grid;
 
 pub use cause::{Cause, cause};
+pub(super) use doubt::in_words as doubts_in_words;
 pub use doubt::{DOUBTS, Doubt, warnings};
 pub use grid::{Grid, Region, Regions};
 
