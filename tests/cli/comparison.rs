@@ -57,8 +57,8 @@ fn points_without_a_counterpart_are_said_at_once() {
 #[test]
 fn a_missing_file_is_named_first() {
     let folder = Folder::new();
-    let run = folder.command("report mine --data missing.csv").assert().failure();
-    assert!(stderr(&run).contains("missing.csv"), "{}", stderr(&run));
+    let run = folder.command("report mine --data missing.csv").assert().code(2);
+    assert!(stderr(&run).contains("missing.csv: cannot be read"), "{}", stderr(&run));
     assert_eq!(folder.files(), [""; 0]);
 }
 

@@ -8,7 +8,9 @@ use crate::exit;
 use crate::queue::{Location, Queue};
 use crate::report::trouble;
 use crate::study::Spacing;
-use crate::sweep::{self, MOST_BINS, Purpose, ReportContent, ReportRequest, Revision};
+use crate::sweep::{
+    self, MOST_BINS, MeasuredError, Purpose, ReportContent, ReportRequest, Revision, SweepError,
+};
 use crate::worker::Interrupt;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -151,7 +153,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     }
     // Who mistypes a file's name wants to hear of it, whatever is in the database.
     for path in &args.data {
-        fs::metadata(path).map_err(|source| CliError::file(path, source))?;
+        let unreadable = |reason| MeasuredError::Read { file: path.display().to_string(), reason };
+        fs::metadata(path).map_err(|reason| SweepError::from(unreadable(reason)))?;
     }
     let folder = OutFolder { folder: args.out.folder.clone() }.of(&request.folder_name());
     sweep::with_queue(db, Purpose::Read, async |queue| {
