@@ -299,7 +299,7 @@ impl Calibration {
         let [unknown, values] = self.unknown_mesh;
         if unknown > 0 {
             let counts = if unknown == values {
-                "it counts as nothing, so that places may be ruled out wrongly; `mesh_error_unknown` in `jobs.csv` says why it is unknown"
+                "it is taken as zero, so that places may be ruled out wrongly; `mesh_error_unknown` in `jobs.csv` says why it is unknown"
             } else {
                 "it counts as the largest one of the neighbours that know it"
             };

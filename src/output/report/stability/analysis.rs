@@ -135,7 +135,9 @@ impl<'a> Analysis<'a> {
                     words.push("unstable at the smallest value already".to_owned());
                 }
                 if let Some(Interval { to: Edge::At(end), .. }) = speed.intervals.last() {
-                    words.push(format!("{} from {} on", speed.known.no_growth(), value_of(*end)));
+                    let (_, unit) = name_and_unit(&self.along.parameter);
+                    let last = value::quantity(speed.mus[1], unit);
+                    words.push(format!("{} from {} to {last}", speed.known.no_growth(), value_of(*end)));
                 }
                 if !first.is_converged {
                     words.push("not converged".to_owned());
@@ -241,7 +243,15 @@ fn speed(omega: &Value, along: &Along, points: &[&StabilityPoint]) -> Speed {
     let leading: Vec<(f64, Option<ComplexMode>)> =
         sorted.iter().map(|(at, point)| (*at, point.leading().copied())).collect();
     bracket_by_neighbours(&mut onsets, &leading);
-    onsets.sort_by(|a, b| a.mu.total_cmp(&b.mu).then(a.frequency_hz.total_cmp(&b.frequency_hz)));
+    // Of modes that grow from the same place on, the fastest is that of the range.
+    let growth_per_s = |onset: &Onset| {
+        let mut points = branches[onset.branch].points.iter().filter(|point| point.mu == onset.above);
+        points.next().map_or(f64::NEG_INFINITY, |point| point.mode.growth_rate_per_s)
+    };
+    onsets.sort_by(|a, b| {
+        let by_growth = growth_per_s(b).total_cmp(&growth_per_s(a));
+        a.mu.total_cmp(&b.mu).then(by_growth).then(a.frequency_hz.total_cmp(&b.frequency_hz))
+    });
     let without_modes = sorted.iter().filter(|(_, point)| point.stability.modes.is_empty());
     let without_modes = without_modes.map(|(at, _)| *at).collect();
     let mut shared: Vec<f64> =
@@ -365,6 +375,27 @@ mod tests {
         assert!(found.note(speed).starts_with("the mode was not followed through its threshold"));
     }
 
+    /// Protects: of two modes that grow at the first value already, the row, its note and the first sentence of the page name the faster one
+    /// first, and the note the other.
+    #[test]
+    fn of_modes_that_grow_from_the_beginning_the_fastest_is_named() {
+        let points = [
+            point(1.0, 0.1, &[(30_000.0, 900.0), (6_000.0, 3.0)]),
+            point(1.0, 0.2, &[(6_000.0, -3.0), (30_000.0, -10.0)]),
+        ];
+        let along = Along::mu();
+        let rows = rows(&points, &along);
+        let found = Analysis::of(&points, &rows, &along, &View::DEFAULT);
+        let speed = &found.groups[0].speeds[0];
+        assert_eq!(found.words(speed)[2], "30 kHz");
+        assert_eq!(speed.lowest().map(|onset| onset.frequency_hz), Some(30_000.0));
+        assert!(
+            found.note(speed).ends_with("1 more mode grows, too: 6 kHz from μ = 0.1"),
+            "{}",
+            found.note(speed)
+        );
+    }
+
     /// Protects: thresholds are those of the parameter that is varied, in a zip with all that move with it, and the table says so.
     /// Sliding that is unstable at small values and stable at large ones gets its range, not a threshold.
     #[test]
@@ -384,7 +415,7 @@ mod tests {
         assert_eq!(table.lines.len(), 1);
         let line: Vec<String> = table.lines[0].iter().map(value::text).collect();
         assert_eq!(line[1..3], ["≤ 1 GPa", "≤ 1 GPa to 2.5 GPa"]);
-        assert!(line[4].contains("stable from young_modulus = 2.5 GPa on"), "{}", line[4]);
+        assert!(line[4].contains("stable from young_modulus = 2.5 GPa to 4 GPa"), "{}", line[4]);
         let said = "Thresholds are those of young_modulus_pa, which this study varies; load_n moves with it.";
         assert_eq!(notes, [said]);
     }

@@ -24,28 +24,30 @@ pub fn nearest_in_words<'a>(
         found.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)))
     };
     let any = nearest(false)?;
+    // A vibration that grows faster hides the one that is looked for.
+    let leading = points.iter().filter_map(|point| Some((*point, point.leading()?)));
+    let fastest = leading.max_by(|(_, a), (_, b)| a.growth_rate_per_s.total_cmp(&b.growth_rate_per_s));
+    let faster = fastest.filter(|(_, mode)| grows(mode) && !is_near(mode));
+    let faster = faster.map(|found| format!("The fastest growing mode has {}.", in_words(found)));
     let of = format!("{} of the grid", count(points.len(), "point"));
     let near = format!("within {} % of {}", significant(100.0 * NEAR, 2), quantity(near_hz, "Hz"));
     if let Some(found) = nearest(true).filter(|(_, mode)| is_near(mode)) {
         let has =
             |point: &StabilityPoint| point.stability.modes.iter().any(|mode| is_near(&mode) && grows(mode));
         let places = points.iter().filter(|point| has(point)).count();
-        return Some(format!(
-            "A mode {near} grows at {places} of {of}. The nearest one has {}.",
-            in_words(found)
-        ));
+        let head =
+            format!("A mode {near} grows at {places} of {of}. The nearest one has {}.", in_words(found));
+        return Some([Some(head), faster].into_iter().flatten().collect::<Vec<_>>().join(" "));
     }
     let band_hz = points.iter().map(|point| point.stability.band_hz).fold(0.0, f64::max);
     let advice = if near_hz * (1.0 - NEAR) > band_hz {
-        format!("Modes were looked for up to {} only.", quantity(band_hz, "Hz"))
-    } else if is_near(&any.1) {
-        String::new()
+        Some(format!("Modes were looked for up to {} only.", quantity(band_hz, "Hz")))
     } else {
-        "Look at what the scene leaves out.".to_owned()
+        (!is_near(&any.1)).then(|| "Look at what the scene leaves out.".to_owned())
     };
     let head =
         format!("No known mode {near} grows at any of {of}. The nearest known mode has {}.", in_words(any));
-    Some(format!("{head} {advice}").trim_end().to_owned())
+    Some([Some(head), faster, advice].into_iter().flatten().collect::<Vec<_>>().join(" "))
 }
 
 /// Whether a vibration does not decay. A mode on the threshold grows, as in the table.
@@ -93,7 +95,7 @@ mod tests {
         assert_eq!(
             said(&points, 11_000.0),
             "A mode within 10 % of 11 kHz grows at 1 of 2 points of the grid. The nearest one has 11.5 kHz at ω = 20 rpm, μ = 0.4, where it grows \
-             at 240 1/s."
+             at 240 1/s. The fastest growing mode has 30 kHz at ω = 20 rpm, μ = 0.4, where it grows at 900 1/s."
         );
         assert_eq!(
             said(&points[..1], 11_000.0),
