@@ -1,7 +1,7 @@
 //! The points in groups, as figures and tables show them: branches over μ at each speed, and where they begin to grow.
 
 use super::along::Along;
-use super::onsets::{name_families, onsets_of};
+use super::onsets::{name_families, onsets_of, sort};
 use super::ranges::{Edge, Interval, Known, Onset, Speed, bracket_by_neighbours, intervals};
 use crate::analysis::ComplexMode;
 use crate::analysis::branches::{Sample, branches};
@@ -243,15 +243,7 @@ fn speed(omega: &Value, along: &Along, points: &[&StabilityPoint]) -> Speed {
     let leading: Vec<(f64, Option<ComplexMode>)> =
         sorted.iter().map(|(at, point)| (*at, point.leading().copied())).collect();
     bracket_by_neighbours(&mut onsets, &leading);
-    // Of modes that grow from the same place on, the fastest is that of the range.
-    let growth_per_s = |onset: &Onset| {
-        let mut points = branches[onset.branch].points.iter().filter(|point| point.mu == onset.above);
-        points.next().map_or(f64::NEG_INFINITY, |point| point.mode.growth_rate_per_s)
-    };
-    onsets.sort_by(|a, b| {
-        let by_growth = growth_per_s(b).total_cmp(&growth_per_s(a));
-        a.mu.total_cmp(&b.mu).then(by_growth).then(a.frequency_hz.total_cmp(&b.frequency_hz))
-    });
+    sort(&mut onsets, &branches);
     let without_modes = sorted.iter().filter(|(_, point)| point.stability.modes.is_empty());
     let without_modes = without_modes.map(|(at, _)| *at).collect();
     let mut shared: Vec<f64> =

@@ -59,6 +59,18 @@ pub(super) fn onsets_of(branch: usize, points: &Branch) -> Vec<Onset> {
     points.spans().into_iter().filter_map(onset).collect()
 }
 
+/// Sorts onsets by their places. Of modes that grow from the same place on, the fastest is that of the range, and it comes first.
+pub(super) fn sort(onsets: &mut [Onset], branches: &[Branch]) {
+    let growth_per_s = |onset: &Onset| {
+        let mut points = branches[onset.branch].points.iter().filter(|point| point.mu == onset.above);
+        points.next().map_or(f64::NEG_INFINITY, |point| point.mode.growth_rate_per_s)
+    };
+    onsets.sort_by(|a, b| {
+        let by_growth = growth_per_s(b).total_cmp(&growth_per_s(a));
+        a.mu.total_cmp(&b.mu).then(by_growth).then(a.frequency_hz.total_cmp(&b.frequency_hz))
+    });
+}
+
 /// Finds the families of a group and names them in the onsets; returns their frequencies.
 pub(super) fn name_families(speeds: &mut [Speed]) -> Vec<f64> {
     let value = |onset: &Onset| Complex::new(0.0, TAU * onset.frequency_hz);
