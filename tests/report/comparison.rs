@@ -9,7 +9,7 @@ use tribosweep_output::publish::chart::palette::{BLUE, VERMILLION};
 use tribosweep_output::report::figure::Plot;
 use tribosweep_output::report::tables::{self, Quantity};
 use tribosweep_output::report::{
-    JobRow, Measurement, Parameters, Report, RowState, View, write, write_compared,
+    JobRow, MeasuredValue, Measurement, Parameters, Report, RowState, View, write, write_compared,
 };
 
 /// A study called `name` at 1, 10 and 100 rpm, with μ* = `offset` + 0.01 log₁₀ ω and an error of 0.0005.
@@ -262,6 +262,25 @@ fn one_study_has_no_comparison() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     write(&report(&[row(7.0, 0.4, RowState::Pending)]), folder.path()).expect("the report is written");
     assert!(!folder.path().join("differences.csv").exists());
+}
+
+/// Protects: two vibrations at frequencies far apart are not called one squeal, and two that are near are.
+#[test]
+fn squeal_at_another_frequency_is_said() {
+    let of_squeal = |frequency_hz: f64| {
+        let value = |name: &str, value| MeasuredValue { name: name.to_owned(), value, error: None };
+        let values = vec![value("mu_star", 0.3), value("frequency_hz", frequency_hz)];
+        let state = RowState::Measured(Measurement { values, squeals: Some(true) });
+        let rows =
+            [study("simulated", 0.3), vec![JobRow { state, ..measured(10.0, 0.4, 0.3, None) }]].concat();
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        write_compared(&report(&rows), folder.path()).expect("the report is written").verdicts.pop()
+    };
+    let agrees = "squeal: simulated and the others agree at the one point where both are known";
+    let apart = ", but frequencies differ by more than 10 % at 1 of 1 point: it may be another squeal";
+    // The study has 14.5 kHz.
+    assert_eq!(of_squeal(6_200.0), Some(format!("{agrees}{apart}.")));
+    assert_eq!(of_squeal(14_000.0), Some(format!("{agrees}.")));
 }
 
 /// Protects: what squeals in one source and not in the other comes first, in the file, on both pages and for the caller, at equal speeds

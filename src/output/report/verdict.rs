@@ -2,11 +2,15 @@
 
 use super::comparison::{Comparison, Difference, Movers};
 use super::parameters::in_words;
+use super::scalar::FREQUENCY;
 use super::sensitivity::Mover;
 use crate::publish::value::{count, fixed, significant_number};
 
 /// A parameter that moves a quantity by less than this share of a difference hardly explains it.
 const MOVES: f64 = 0.1;
+
+/// Frequencies that differ by a larger share are hardly those of one vibration.
+const SAME_SQUEAL: f64 = 0.1;
 
 /// Differences within so many standard errors agree.
 const AGREE: f64 = 2.0;
@@ -37,9 +41,27 @@ impl Comparison {
                 1 => "the one point".to_owned(),
                 several => format!("all {}", count(several as u64, "point")),
             };
-            format!("squeal: {} and the others agree at {points} where both are known.", self.reference)
+            let other = self.other_frequencies().unwrap_or_default();
+            format!(
+                "squeal: {} and the others agree at {points} where both are known{other}.",
+                self.reference
+            )
         });
         of_quantities.chain(of_squeal).collect()
+    }
+
+    /// That measured frequencies are far from those of the simulation, as the end of a sentence; `None` if none is.
+    fn other_frequencies(&self) -> Option<String> {
+        let own = self.differences.iter().filter(|one| one.is_measured && one.scalar == FREQUENCY);
+        let deviations: Vec<f64> = own.filter_map(Difference::deviation).collect();
+        let far = deviations.iter().filter(|share| share.abs() > SAME_SQUEAL).count();
+        (far > 0).then(|| {
+            format!(
+                ", but frequencies differ by more than {} at {far} of {}: it may be another squeal",
+                share(SAME_SQUEAL),
+                count(deviations.len(), "point")
+            )
+        })
     }
 
     fn verdict(&self, part: &[Difference]) -> Option<String> {
