@@ -115,11 +115,8 @@ impl History {
     /// The run that fits best, with its number: of those that have at least half as many values as the most, the one that squeals wrongly at
     /// the fewest points, and of these the one with the smallest mean square of distances.
     pub fn best_run(&self) -> Option<(usize, Fit)> {
-        let fits: Vec<Fit> = self.runs.iter().map(|run| self.of_run(run)).collect();
-        let most = fits.iter().map(|fit| fit.compared).max()?;
         let key = |fit: &Fit| (fit.other_state, fit.square_sum / fit.compared.max(1) as f64);
-        let all = fits.into_iter().enumerate().filter(|(_, fit)| 2 * fit.compared >= most);
-        all.reduce(|best, own| {
+        self.fits().reduce(|best, own| {
             let (a, b) = (key(&best.1), key(&own.1));
             if b.0 < a.0 || b.0 == a.0 && b.1 < a.1 { own } else { best }
         })
@@ -127,9 +124,14 @@ impl History {
 
     /// Runs that nothing measured rules out, of those that have at least half as many values as the most.
     pub fn runs_that_fit(&self) -> usize {
+        self.fits().filter(|(_, fit)| !self.is_ruled_out(fit)).count()
+    }
+
+    /// The fits of the runs that have at least half as many values as the most, with the numbers of the runs.
+    fn fits(&self) -> impl Iterator<Item = (usize, Fit)> {
         let fits: Vec<Fit> = self.runs.iter().map(|run| self.of_run(run)).collect();
         let most = fits.iter().map(|fit| fit.compared).max().unwrap_or(0);
-        fits.iter().filter(|fit| 2 * fit.compared >= most && !self.is_ruled_out(fit)).count()
+        fits.into_iter().enumerate().filter(move |(_, fit)| 2 * fit.compared >= most)
     }
 
     /// Whether a run is too far from a measured value, or in another state.

@@ -4,13 +4,11 @@ use super::comparison::{Comparison, Difference, Movers};
 use super::parameters::in_words;
 use super::scalar::FREQUENCY;
 use super::sensitivity::Mover;
+use super::stability::NEAR;
 use crate::publish::value::{count, fixed, significant_number};
 
 /// A parameter that moves a quantity by less than this share of a difference hardly explains it.
 const MOVES: f64 = 0.1;
-
-/// Frequencies that differ by a larger share are hardly those of one vibration.
-const SAME_SQUEAL: f64 = 0.1;
 
 /// Differences within so many standard errors agree.
 const AGREE: f64 = 2.0;
@@ -54,11 +52,11 @@ impl Comparison {
     fn other_frequencies(&self) -> Option<String> {
         let own = self.differences.iter().filter(|one| one.is_measured && one.scalar == FREQUENCY);
         let deviations: Vec<f64> = own.filter_map(Difference::deviation).collect();
-        let far = deviations.iter().filter(|share| share.abs() > SAME_SQUEAL).count();
+        let far = deviations.iter().filter(|share| share.abs() > NEAR).count();
         (far > 0).then(|| {
             format!(
                 ", but frequencies differ by more than {} at {far} of {}: it may be another squeal",
-                share(SAME_SQUEAL),
+                share(NEAR),
                 count(deviations.len(), "point")
             )
         })

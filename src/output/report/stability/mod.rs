@@ -21,6 +21,7 @@ pub use along::Along;
 pub(super) use analysis::{Analysis, GroupModes, rows};
 pub(super) use caveats::{above_band, small_contact};
 pub(super) use contour::{Node, zero_line};
+pub(super) use nearest::NEAR;
 pub use nearest::nearest_in_words;
 pub(super) use ranges::{Onset, Speed};
 pub(super) use table::described;

@@ -5,9 +5,9 @@ use crate::publish::value::{count, quantity, significant};
 use crate::report::parameters::assignments;
 use crate::report::stability_point::StabilityPoint;
 
-/// Modes explain a measured frequency within this share of it: a limit cycle has not exactly the frequency of the mode that starts it, and a
-/// scene never has exactly the stiffness of the machine.
-const NEAR: f64 = 0.1;
+/// A computed frequency explains a measured one within this share of it: a limit cycle has not exactly the frequency of the mode that starts
+/// it, and a scene never has exactly the stiffness of the machine.
+pub(in crate::report) const NEAR: f64 = 0.1;
 
 /// Whether a known mode near a frequency \[Hz\] grows at one of the points, in words; `None` without any mode.
 pub fn nearest_in_words<'a>(
