@@ -23,11 +23,11 @@ def build():
     WORK.mkdir(parents=True, exist_ok=True)
 
 
-def tribosweep(*arguments, database="docs.db", check=True):
+def tribosweep(*arguments, database="docs.db", check=True, timeout_s=None):
     """Runs the program in the work folder and returns what it prints. Without `check` it may fail."""
     environment = dict(os.environ, TRIBOSWEEP_DB=str(WORK / database))
     done = subprocess.run(
-        [PROGRAM, *arguments], cwd=WORK, env=environment, check=check, stdout=subprocess.PIPE, text=True
+        [PROGRAM, *arguments], cwd=WORK, env=environment, check=check, stdout=subprocess.PIPE, text=True, timeout=timeout_s
     )
     return done.stdout
 
@@ -40,7 +40,12 @@ def sweep(study, database="docs.db", options=(), fails=False):
     else:
         path = ROOT / study
     tribosweep("run", str(path), *options, database=database, check=not fails)
-    lines = tribosweep("export", str(path), "--all", "--format", "json", database=database).splitlines()
+    return exported(str(path), database)
+
+
+def exported(study, database):
+    """The rows of a study."""
+    lines = tribosweep("export", study, "--all", "--format", "json", database=database).splitlines()
     rows = [json.loads(line) for line in lines]
     for row in rows:
         row["elements"] = [row[f"elements_{axis}"] for axis in "xyz"]

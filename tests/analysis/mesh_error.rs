@@ -110,9 +110,60 @@ fn what_cannot_be_compared_is_unknown() {
     }
     let alone = JobRecord { start: None, ..record(&template, FINE, COARSE) };
     assert_eq!(alone.mesh_error(), Err(UnknownError::NoCoarserMesh));
-    let slides = JobRecord { outcome: Outcome::Decayed, ..alone };
-    let of_sliding = MeshError { mu_star: 2.0e-4 * 0.3, frequency_hz: None, mu_star_extrapolated: None };
+    let slides = JobRecord { outcome: Outcome::Decayed, sliding_mesh_error: Some(3.0e-5), ..alone };
+    let of_sliding = MeshError { mu_star: 3.0e-5, frequency_hz: None, mu_star_extrapolated: None };
     assert_eq!(slides.mesh_error(), Ok(of_sliding));
+    let of_before = JobRecord { sliding_mesh_error: None, ..slides };
+    assert_eq!(of_before.mesh_error(), Err(UnknownError::OldRecord));
+}
+
+/// Steady sliding on a track whose radius is 1 to 2 times the length of the pin along it, where friction along the track differs most from
+/// place to place.
+fn on_a_narrow_track(elements: [usize; 3]) -> JobSpec {
+    let mut spec = JobSpec { stability: StabilityMethod::Modes, ..JobSpec::default() };
+    spec.run.start = Start::Rest;
+    spec.scene.pin.size_m = [0.010, 0.010, 0.010];
+    spec.scene.pin.elements = elements;
+    spec.scene.clamp.width_m = 0.005;
+    spec.scene.disk.track_radius_m = 0.010;
+    spec.scene.contact.mu = 0.2;
+    spec
+}
+
+/// Protects: the error of μ\* of steady sliding on a narrow track is within its bound, also where friction falls with the speed, which is
+/// larger far from the axis. The limit is that of a mesh with 5 times the elements, whose own error is 25 times smaller if it is of second
+/// order. The bound is the range of friction on the face over the elements, here with the corners of a face of 10 × 10 mm at R = 10 mm.
+#[test]
+fn the_bound_of_sliding_covers_narrow_tracks() {
+    let changes: [fn(&mut JobSpec); 3] = [
+        |_| {},
+        |spec| {
+            let contact = &mut spec.scene.contact;
+            (contact.law, contact.mu_static, contact.speed_m_s) =
+                (FrictionLaw::Exponential, Some(0.4), Some(0.01));
+        },
+        |spec| spec.scene.disk.track_radius_m = 0.020,
+    ];
+    for change in changes {
+        let on = |n: usize| {
+            let mut spec = on_a_narrow_track([n; 3]);
+            change(&mut spec);
+            let found = solve(&spec, &mut Unobserved).unwrap();
+            (found.mu_star, found.sliding_mesh_error.unwrap())
+        };
+        let limit = on(10).0;
+        for n in [2, 4] {
+            let (mu_star, bound) = on(n);
+            let error = (mu_star - limit).abs();
+            // The error is real, and not that of rounding.
+            assert!(error > 1.0e-3 * bound && error <= bound, "{n} elements: {error} and {bound}");
+        }
+    }
+    let corner = 0.005_f64.hypot(0.005);
+    let most = 1.0;
+    let least = 0.005 / corner;
+    let bound = solve(&on_a_narrow_track([4; 3]), &mut Unobserved).unwrap().sliding_mesh_error.unwrap();
+    assert!((bound / (0.2 * (most - least) / 4.0) - 1.0).abs() < 1.0e-12, "{bound}");
 }
 
 /// Protects: modes have errors from the same modes on the coarser mesh if their job is to be compared, and keep all bits beside that. A mode

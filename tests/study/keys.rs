@@ -515,5 +515,5 @@ fn the_defaults_are_known() {
     );
     let expected: Value = serde_json::from_str(text).unwrap();
     let defaults = serde_json::to_value(JobSpec::default()).unwrap();
-    assert_eq!((tribosweep::solver::VERSION, defaults), ("9", expected));
+    assert_eq!((tribosweep::solver::VERSION, defaults), ("10", expected));
 }

@@ -60,6 +60,7 @@ impl JobRecord {
             growth_rate_per_s: Some(-200.0),
             obstacle: Some(Obstacle::Unsteady { figure: "period".to_owned(), spread: 0.1, drift: 0.2 }),
             stability: Some(SlidingStability::example()),
+            sliding_mesh_error: Some(3e-5),
             accuracy_reached: Some(false),
             start: Some(CoarseStart {
                 elements: [6, 8, 5],

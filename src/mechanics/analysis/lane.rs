@@ -4,6 +4,7 @@ use super::cycles::{Cycle, CycleCutter};
 use super::decay::{self, DecayMonitor};
 use super::drive::drive;
 use super::lines;
+use super::mesh_error::error_of_sliding;
 use super::nested::CoarseStart;
 use super::noted::Noted;
 use super::plastic::{self, NEGLIGIBLE_SHARE};
@@ -264,6 +265,7 @@ impl LaneAnalysis {
             growth_rate_per_s: self.monitor.as_ref().and_then(DecayMonitor::growth_rate_per_s),
             obstacle: (outcome == Outcome::NotPeriodic).then(|| self.obstacle(energies)),
             stability: self.stability.clone(),
+            sliding_mesh_error: self.decays.then(|| error_of_sliding(&self.spec, model)),
             accuracy_reached: None,
             start: self.start.clone(),
             disk: model.ring().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),

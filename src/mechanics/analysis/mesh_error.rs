@@ -5,10 +5,12 @@
 //! order: some differences are small by chance. So the bound takes p = 1 and adds a share of the value that falls with the mesh. Its
 //! numbers are those that cover the errors of many scenes (docs/evidence/mesh_errors.md).
 
+use super::drive::drive;
 use super::mode::ComplexMode;
 use super::outcome::Outcome;
 use super::record::JobRecord;
-use crate::spec::Accuracy;
+use crate::solver::Model;
+use crate::spec::{Accuracy, JobSpec};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -34,7 +36,7 @@ pub enum UnknownError {
     CoarserFailed,
     /// The run on the coarser mesh ended in another way.
     OtherOutcome,
-    /// An earlier version did not keep what is needed of the run on the coarser mesh.
+    /// An earlier version did not keep what is needed.
     OldRecord,
     /// The clamp has another width on the coarser mesh.
     OtherClamp,
@@ -52,7 +54,7 @@ impl UnknownError {
             Self::NoCoarserMesh => "no run on a coarser mesh",
             Self::CoarserFailed => "the run on the coarser mesh failed",
             Self::OtherOutcome => "another outcome on the coarser mesh",
-            Self::OldRecord => "a run on a coarser mesh of which an earlier version kept too little",
+            Self::OldRecord => "a result of an earlier version, which kept too little",
             Self::OtherClamp => "another width of the clamp on the coarser mesh",
             Self::OtherRegime => "another regime on the coarser mesh",
             Self::OtherFrequency => "another frequency on the coarser mesh",
@@ -92,9 +94,6 @@ const MODE_SHARE: f64 = 0.0015;
 /// Modes whose frequencies differ by a larger share are different ones.
 const SAME_MODE: f64 = 0.03;
 
-/// Error of μ\* of steady sliding, relative to μ\*. It depends on the mesh only by where along the curved track the pressure is.
-const STEADY_SLIDING: f64 = 2.0e-4;
-
 /// μ\* is extrapolated as if its error had the order 2, where this is better for most jobs: where the two meshes differ by at most
 /// this share.
 const EXTRAPOLATED_SHARE: f64 = 0.04;
@@ -119,7 +118,8 @@ impl JobRecord {
     pub fn mesh_error(&self) -> Result<MeshError, UnknownError> {
         match self.outcome {
             Outcome::Periodic => {}
-            Outcome::Decayed => return self.error_of_sliding(),
+            // The modes alone have μ* of steady sliding, whether it is stable or not.
+            Outcome::Decayed | Outcome::Unstable => return self.error_of_sliding(),
             _ => return Err(UnknownError::NoSteadyState),
         }
         let coarser = self.start.as_ref().ok_or(UnknownError::NoCoarserMesh)?;
@@ -195,12 +195,29 @@ impl JobRecord {
         match self.start.as_ref().and_then(|coarser| coarser.outcome) {
             Some(Outcome::Periodic) => Err(UnknownError::OtherOutcome),
             _ => Ok(MeshError {
-                mu_star: STEADY_SLIDING * self.mu_star.abs(),
+                mu_star: self.sliding_mesh_error.ok_or(UnknownError::OldRecord)?,
                 frequency_hz: None,
                 mu_star_extrapolated: None,
             }),
         }
     }
+}
+
+/// Bound of the error that the mesh makes in μ\* of steady sliding. All nodes in contact slip, so μ\* is a mean of the friction along the
+/// track, weighted with the pressure. A mesh can only have the pressure in the wrong place, and it is wrong by less than an element. So the
+/// bound is the range of friction over the face, over the smaller number of elements across it. On a mesh from a file it is the whole range.
+pub(super) fn error_of_sliding(spec: &JobSpec, model: &Model) -> f64 {
+    let drive = drive(spec);
+    let along_track = model.slaves().iter().map(|node| {
+        let [x, y] = node.surface_motion;
+        let motion = libm::hypot(x, y);
+        let mu = drive.law.steady(motion * drive.rate.abs()).map_or(drive.law.mu(), |[mu, _]| mu);
+        if motion == 0.0 { mu } else { mu * y / motion }
+    });
+    let (least, most) =
+        along_track.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), mu| (a.min(mu), b.max(mu)));
+    let elements = spec.scene.pin.own_elements().map_or(1, |[nx, ny, _]| nx.min(ny));
+    (most - least) / elements as f64
 }
 
 /// The mode of `modes` that is nearest to a mode, if its frequency is near enough.

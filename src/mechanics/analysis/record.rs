@@ -174,6 +174,10 @@ pub struct JobRecord {
     /// The eigenvalues of steady sliding; none if they were not computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<SlidingStability>,
+    /// Bound of the error that the mesh makes in μ\* if all nodes in contact slip steadily; none in another outcome, and in records of earlier
+    /// versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sliding_mesh_error: Option<f64>,
     /// Whether the mesh error is as small as the job asks for; none if it asks for no accuracy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy_reached: Option<bool>,

@@ -4,6 +4,7 @@ use super::above_band::AboveBand;
 use super::drive::drive;
 use super::error::{JobError, check_step};
 use super::lane::elastic_disk;
+use super::mesh_error::error_of_sliding;
 use super::mode::ComplexMode;
 use super::nested::Beginning;
 use super::noted::Noted;
@@ -310,6 +311,7 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
         growth_rate_per_s: point.modes.first().map(growth),
         obstacle: None,
         stability: Some(stability),
+        sliding_mesh_error: Some(error_of_sliding(spec, model)),
         accuracy_reached: None,
         start: None,
         windows: Vec::new(),

@@ -66,4 +66,4 @@ pub use transfer::PinMotion;
 
 /// Version of everything that can change the bits of a result. It is part of every job's key. Raise it with any
 /// change of the scheme, of the operator's rounding, of the analysis, or of the eigenvalues of steady sliding.
-pub const VERSION: &str = "9";
+pub const VERSION: &str = "10";
