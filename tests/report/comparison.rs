@@ -264,6 +264,31 @@ fn one_study_has_no_comparison() {
     assert!(!folder.path().join("differences.csv").exists());
 }
 
+/// Protects: a measured frequency beside a job that is not periodic is not compared with its mean rate, and this is said; its μ\* is
+/// compared.
+#[test]
+fn a_frequency_beside_a_job_that_is_not_periodic_is_not_compared() {
+    let value = |name: &str, value| MeasuredValue { name: name.to_owned(), value, error: None };
+    let values = vec![value("mu_star", 0.3), value("frequency_hz", 14_000.0)];
+    let state = RowState::Measured(Measurement { values, squeals: Some(true) });
+    let mut rows = study("simulated", 0.3);
+    let RowState::Done(record) = &mut rows[1].state else { panic!("a result") };
+    record.outcome = Outcome::NotPeriodic;
+    rows.push(JobRow { state, ..measured(10.0, 0.4, 0.3, None) });
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let found = write_compared(&report(&rows), folder.path()).expect("the report is written");
+    let said = "1 value of frequency_hz in rig is compared with nothing: a job of simulated at this place, or on one side of it, has no such \
+                value, because it slides steadily or is not periodic";
+    let squeal = "whether rig squeals is compared at none of its points: they lie beyond the jobs of simulated, between one that squeals and \
+                  one that does not, or at one that is not periodic";
+    assert_eq!(found.unmatched, [said, squeal]);
+    assert!(
+        matches!(&*found.verdicts, [only] if only.starts_with("μ*: simulated is 3.3 % above")),
+        "{:?}",
+        found.verdicts
+    );
+}
+
 /// Protects: two vibrations at frequencies far apart are not called one squeal, and two that are near are.
 #[test]
 fn squeal_at_another_frequency_is_said() {

@@ -80,4 +80,15 @@ fn indices_read_well() {
     let words = markdown(&found);
     let said = "Doubt the results of 1 of 16 jobs: the motion is not periodic (1). They count here.";
     assert_eq!(words.matches(said).count(), 2, "{words}");
+    // A run that is not periodic has no frequency.
+    let found = sensitivities(&doubtful, &[Scalar::find("frequency_hz").unwrap()], false);
+    let words = markdown(&found);
+    assert!(words.contains("15 points") && words.contains("1 job without a value here"), "{words}");
+    // One parameter has all shares, and none is given.
+    let alone: Vec<JobRow> = doubtful.into_iter().take(4).collect();
+    let words = markdown(&sensitivities(&alone, &[Scalar::find("mu_star").unwrap()], false));
+    assert!(
+        words.contains("Only mu varies, so everything depends on it alone") && !words.contains("1.000"),
+        "{words}"
+    );
 }

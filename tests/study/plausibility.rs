@@ -328,6 +328,28 @@ fn diameters_and_holders_in_other_units_are_named() {
     assert_eq!(warnings(&of_scene(r#""holder": { "mass_kg": 0.08, "stiffness_y_n_m": 5e6 }"#)), []);
 }
 
+/// Protects: a limit of time in which the holder cannot swing once is named, with the time that it takes; a longer one is not.
+#[test]
+fn a_run_shorter_than_a_swing_of_the_holder_is_named() {
+    let with = |limit_s: f64| {
+        warnings(&format!(
+            r#"{{ "scene": {{ "holder": {{ "mass_kg": 0.1, "stiffness_y_n_m": 1e4 }} }}, "run": {{ "limit_s": {limit_s} }} }}"#
+        ))
+    };
+    // 2π √(0.1045 kg/1e4 N/m) with the mass of the pin, 4.5 g.
+    let found = with(0.015);
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert_contains(
+        &found[0].to_string(),
+        &[
+            "run.limit_s = 0.015: the run is at most 0.015 s long",
+            "up to 0.0203 s",
+            "no run can become periodic",
+        ],
+    );
+    assert_eq!(with(0.03), []);
+}
+
 /// Protects: who asks for a mesh error on a mesh that has no coarser one is told so, whether there is a run or only modes.
 #[test]
 fn an_error_without_a_coarser_mesh_is_named() {

@@ -28,6 +28,9 @@ use std::path::PathBuf;
 /// Significant digits of modes on a terminal. Without a mesh error fewer would be known; `modes.csv` has all digits.
 const DIGITS: usize = 4;
 
+/// A smaller frequency \[Hz\] to look near is suspected to be in kilohertz.
+const LEAST_NEAR_HZ: f64 = 100.0;
+
 /// Significant digits of thresholds and of the parameters beside them.
 const PLACE_DIGITS: usize = 6;
 
@@ -77,6 +80,11 @@ fn frequency_hz(text: &str) -> Result<f64, String> {
 
 /// Computes the modes. If it is interrupted, the tables have the points that are done.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+    if let Some(near_hz) = args.near.filter(|near_hz| *near_hz < LEAST_NEAR_HZ) {
+        log(&format!(
+            "warning: --near is {near_hz} Hz, at which hardly any pin squeals; write '11 kHz' for kilohertz"
+        ));
+    }
     let plan = args.study.plan_of_modes()?;
     let on_grid = if args.shapes { shapes::points(&plan)? } else { Vec::new() };
     let name = plan.name().to_owned();

@@ -39,16 +39,14 @@ pub struct Branch {
 impl Branch {
     /// The two points between which the growth rate becomes positive first.
     pub fn around_mu_c(&self) -> Option<[BranchPoint; 2]> {
-        let becomes_positive = |pair: &&[BranchPoint]| {
-            pair[0].mode.growth_rate_per_s < 0.0 && pair[1].mode.growth_rate_per_s >= 0.0
-        };
+        let becomes_positive = |pair: &&[BranchPoint]| !pair[0].mode.grows() && pair[1].mode.grows();
         self.points.windows(2).find(becomes_positive).map(|pair| [pair[0], pair[1]])
     }
 
     /// Where it grows: the pairs of points between which the growth rate becomes positive and, after that, negative. The first is none
     /// if it grows at its first point already, the second if it still grows at its last one.
     pub fn spans(&self) -> Vec<[Option<[BranchPoint; 2]>; 2]> {
-        let grows = |point: &BranchPoint| point.mode.growth_rate_per_s >= 0.0;
+        let grows = |point: &BranchPoint| point.mode.grows();
         let mut spans = Vec::new();
         let mut open = self.points.first().filter(|point| grows(point)).map(|_| None);
         for pair in self.points.windows(2) {

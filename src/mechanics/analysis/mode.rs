@@ -25,6 +25,11 @@ pub struct ComplexMode {
 }
 
 impl ComplexMode {
+    /// Whether the mode grows, or at least does not decay.
+    pub fn grows(&self) -> bool {
+        self.growth_rate_per_s >= 0.0
+    }
+
     /// A converged mode without a residual, of whose error by the mesh nothing is known.
     pub fn of(frequency_hz: f64, growth_rate_per_s: f64) -> Self {
         let size_per_s = libm::hypot(TAU * frequency_hz, growth_rate_per_s);

@@ -228,6 +228,16 @@ impl Calibration {
     /// What was found, in sentences.
     pub fn in_words(&self) -> Vec<String> {
         let mut words = Vec::new();
+        let [missing, values] = self.without_values;
+        let without_values = (missing > 0).then(|| {
+            format!(
+                "{missing} of {values} values of runs that squeal are missing, because these runs have no period; they rule out nothing."
+            )
+        });
+        let is_mostly_missing = 2 * missing > values;
+        if let Some(own) = without_values.as_ref().filter(|_| is_mostly_missing) {
+            words.push(format!("There is no usable answer: {own}"));
+        }
         let all = format!("{} ({})", count(self.points as u64, "point"), count(self.jobs as u64, "job"));
         if let Some(nearest) = &self.nearest {
             words.push(format!(
@@ -242,10 +252,10 @@ impl Calibration {
             let has_emulator = self.checks.iter().any(|check| check.values > 0);
             let has_values = self.data.iter().any(|own| own.error.is_some());
             if has_values && !has_emulator {
-                words.push(
-                    "Too few runs have a result for an emulator, so their values rule out nothing yet."
-                        .to_owned(),
-                );
+                if !is_mostly_missing {
+                    let head = "There is no usable answer yet: too few runs have a result for an emulator, so their values rule out nothing.";
+                    words.insert(0, head.to_owned());
+                }
             } else if self.runs_that_fit == 0 {
                 // An interval that no run has confirmed is not to be taken for a result.
                 words.push(
@@ -290,12 +300,7 @@ impl Calibration {
                 value::fixed(100.0 * check.within_two as f64 / check.values as f64, 0)
             ));
         }
-        let [missing, values] = self.without_values;
-        if missing > 0 {
-            words.push(format!(
-                "{missing} of {values} values of runs that squeal are missing, because these runs have no period; they rule out nothing."
-            ));
-        }
+        words.extend(without_values.filter(|_| !is_mostly_missing));
         let [unknown, values] = self.unknown_mesh;
         if unknown > 0 {
             let counts = if unknown == values {
@@ -430,5 +435,47 @@ mod tests {
             "{without}"
         );
         assert!(!with.contains("No run agrees") && with.contains("mu lies between 0.2 and 0.3."), "{with}");
+    }
+
+    /// Protects: data that rule nothing out, because runs have no values, are not read as an answer: this is the first sentence.
+    #[test]
+    fn no_answer_comes_first() {
+        let datum = Datum {
+            place: Vec::new(),
+            of: "mu_star",
+            measured: json!(0.3),
+            error: Some(0.01),
+            best: Value::Null,
+            band: None,
+        };
+        let of = |missing: usize, checked: usize| {
+            let check = Check { of: "mu_star", values: checked, within_two: checked };
+            let own = Calibration {
+                data: vec![datum.clone()],
+                points: 20,
+                jobs: 20,
+                share: 1.0,
+                checks: vec![check],
+                without_values: [missing, 20],
+                ..Calibration::default()
+            };
+            own.in_words()
+        };
+        let few = of(0, 0);
+        assert!(few[0].starts_with("There is no usable answer yet: too few runs"), "{few:?}");
+        for checked in [0, 9] {
+            let missing = of(11, checked);
+            assert!(missing[0].starts_with("There is no usable answer: 11 of 20 values"), "{missing:?}");
+            assert!(
+                !missing[1..].iter().any(|words| words.contains("usable") || words.contains("11 of 20")),
+                "{missing:?}"
+            );
+        }
+        let some = of(10, 9);
+        assert!(
+            some[0].starts_with("The data leave")
+                && some.iter().any(|words| words.starts_with("10 of 20 values")),
+            "{some:?}"
+        );
     }
 }

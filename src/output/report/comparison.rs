@@ -87,6 +87,8 @@ struct Matches {
     between: usize,
     /// Other points.
     elsewhere: usize,
+    /// The quantity of each value at or between jobs of the reference that have no such value.
+    without_value: Vec<&'static Scalar>,
 }
 
 impl Comparison {
@@ -136,11 +138,15 @@ impl Comparison {
             let none = matches.none_in_words(source.name, layout.sources[0].name);
             if source.is_measured && none.is_none() {
                 comparison.unmatched.extend(matches.some_in_words(source.name, layout.sources[0].name));
+                let of = |scalar: &&'static Scalar| {
+                    matches.values_in_words(scalar, source.name, layout.sources[0].name)
+                };
+                comparison.unmatched.extend(scalars.iter().filter_map(of));
             }
             if none.is_none() && says_squeal && comparison.compared_squeals == compared_before {
                 comparison.unmatched.push(format!(
-                    "whether {} squeals is compared at none of its points: they lie beyond the jobs of {}, or between one that squeals and one \
-                     that does not",
+                    "whether {} squeals is compared at none of its points: they lie beyond the jobs of {}, between one that squeals and one \
+                     that does not, or at one that is not periodic",
                     source.name, layout.sources[0].name
                 ));
             }
@@ -220,7 +226,12 @@ impl Comparison {
             }
             for scalar in scalars.iter().filter(|scalar| scalar.is_settled(job.row)) {
                 let Some(value) = scalar.value(job.row) else { continue };
-                let Some(reference) = reference_at(curve, x, x_axis, scalar) else { continue };
+                let Some(reference) = reference_at(curve, x, x_axis, scalar) else {
+                    if position_in(curve, x, x_axis).is_some() {
+                        matches.without_value.push(scalar);
+                    }
+                    continue;
+                };
                 let (parameters, texts) = self.parameters(layout, group, by_of_curve, job);
                 let words = [group.caption(), layout.series_name(&layout.series[*index])];
                 self.differences.push(Difference {
@@ -422,6 +433,20 @@ impl Matches {
         })
     }
 
+    /// How many values of a quantity have a counterpart without this quantity, in a sentence; none if all have one with it.
+    fn values_in_words(&self, scalar: &Scalar, source: &str, reference: &str) -> Option<String> {
+        let values = self.without_value.iter().filter(|own| **own == scalar).count();
+        (values > 0).then(|| {
+            format!(
+                "{} of {} in {source} {} compared with nothing: a job of {reference} at this place, or on one side of it, has no such value, \
+                 because it slides steadily or is not periodic",
+                value::count(values, "value"),
+                scalar.name,
+                if values == 1 { "is" } else { "are" }
+            )
+        })
+    }
+
     fn in_words(
         &self,
         source: &str,
@@ -429,7 +454,7 @@ impl Matches {
         is_measured: bool,
         of_reference: usize,
     ) -> Vec<String> {
-        let Self { equal, between, elsewhere } = *self;
+        let Self { equal, between, elsewhere, .. } = *self;
         let all = equal + between + elsewhere;
         let mut words = Vec::new();
         if equal < all {

@@ -158,6 +158,11 @@ impl Scalar {
     pub(super) fn is_settled(&self, row: &JobRow) -> bool {
         self != FREQUENCY || row.record().is_none_or(|record| record.outcome != Outcome::NotPeriodic)
     }
+
+    /// The value in a row, if it is settled.
+    pub(super) fn settled_value(&self, row: &JobRow) -> Option<f64> {
+        self.value(row).filter(|_| self.is_settled(row))
+    }
 }
 
 /// A meaning up to its first comma or semicolon.

@@ -127,7 +127,25 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     found.extend(clamp(spec));
     found.extend(cylinder(spec));
     found.extend(friction(spec));
+    found.extend(too_short_for_the_holder(spec));
     found
+}
+
+/// A limit of time in which no run can become periodic: its cycles must cover a swing of the holder.
+fn too_short_for_the_holder(spec: &JobSpec) -> Option<Doubt> {
+    let slow = spec.scene.slow_times()?;
+    let covered_s = slow.swing_s + slow.relaxation_s;
+    (spec.has_run() && spec.scene.program.is_constant() && spec.run.limit_s < covered_s).then(|| Doubt {
+        kind: "holder_time",
+        fields: owned(&["run.limit_s", "scene.holder.mass_kg", "scene.holder.stiffness_x_n_m", "scene.holder.stiffness_y_n_m"]),
+        size: covered_s / spec.run.limit_s,
+        message: format!(
+            "the run is at most {} s long, and with its holder the pin takes up to {} s to swing once and to settle, so no run can become periodic",
+            short(spec.run.limit_s),
+            short(covered_s)
+        ),
+        help: "give a run.limit_s that is several times as long, or check the units of the holder: N/m and kg".to_owned(),
+    })
 }
 
 /// An error that is asked for where there is nothing to compare with.

@@ -119,11 +119,24 @@ impl Points<'_> {
     }
 
     fn of_scalar(&self, scalar: &Scalar) -> Sensitivity {
-        let with_value: Vec<(usize, f64)> =
-            self.rows.iter().enumerate().filter_map(|(at, row)| Some((at, scalar.value(row)?))).collect();
+        let with_value: Vec<(usize, f64)> = self
+            .rows
+            .iter()
+            .enumerate()
+            .filter_map(|(at, row)| Some((at, scalar.settled_value(row)?)))
+            .collect();
         let y: Vec<f64> = with_value.iter().map(|(_, y)| *y).collect();
         let basis = self.basis(with_value.iter().map(|(at, _)| *at).collect());
         let mut remarks: Vec<String> = self.doubtful(&basis.points).into_iter().collect();
+        let is_alone = self.parameters.len() == 1;
+        if let [only] = &*self.parameters
+            && !self.is_morris
+        {
+            remarks.push(format!(
+                "Only {} varies, so everything depends on it alone: there are no shares to compare.",
+                only.name
+            ));
+        }
         let last = |slices: &[Vec<usize>], points: &[usize]| {
             let own: Vec<f64> = points.iter().map(|&at| y[at]).collect();
             pawn(slices, &own)
@@ -134,6 +147,7 @@ impl Points<'_> {
             let levels_of_x = levels(&x);
             let [mut main, mut total] = [None, None];
             match basis.design {
+                _ if is_alone => {}
                 // A parameter of which one value is left decides nothing here.
                 Design::Grid(_) if levels_of_x.len() == 1 => {}
                 Design::Grid(_) => {
@@ -257,7 +271,9 @@ impl Points<'_> {
                 .iter()
                 .all(|other| (other.values[at] != other.values[at - 1]) == (other.name == own.name));
             let step = MORRIS_STEP.copysign(own.values[at] - own.values[at - 1]);
-            is_alone.then(|| Some((scalar.value(rows[at])? - scalar.value(rows[at - 1])?) / step))?
+            is_alone.then(|| {
+                Some((scalar.settled_value(rows[at])? - scalar.settled_value(rows[at - 1])?) / step)
+            })?
         };
         (1..rows.len()).filter_map(effect).collect()
     }
@@ -334,7 +350,7 @@ pub fn points_table(rows: &[JobRow], of: &[&'static Scalar]) -> (Table, usize) {
     let rows: Vec<&JobRow> = rows.iter().filter(ended).collect();
     let parameters = parameters(&rows);
     let point = |(at, row): (usize, &&JobRow)| {
-        let results = of.iter().map(|scalar| scalar.value(row)).collect::<Option<_>>()?;
+        let results = of.iter().map(|scalar| scalar.settled_value(row)).collect::<Option<_>>()?;
         Some(PointOfStudy { parameters: parameters.iter().map(|own| own.values[at]).collect(), results })
     };
     let points: Vec<PointOfStudy> = rows.iter().enumerate().filter_map(point).collect();

@@ -90,8 +90,7 @@ impl<'a> Analysis<'a> {
 
     /// The number of points at which a mode grows.
     pub fn unstable_points(&self) -> usize {
-        let grows =
-            |point: &&StabilityPoint| point.leading().is_some_and(|mode| mode.growth_rate_per_s >= 0.0);
+        let grows = |point: &&StabilityPoint| point.leading().is_some_and(ComplexMode::grows);
         self.points.iter().filter(grows).count()
     }
 

@@ -20,20 +20,20 @@ pub fn nearest_in_words<'a>(
     let nearest = |only_growing: bool| {
         let modes =
             points.iter().flat_map(|point| point.stability.modes.iter().map(move |mode| (*point, mode)));
-        let found = modes.filter(|(_, mode)| !only_growing || grows(mode));
+        let found = modes.filter(|(_, mode)| !only_growing || mode.grows());
         found.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)))
     };
     let any = nearest(false)?;
     // A vibration that grows faster hides the one that is looked for.
     let leading = points.iter().filter_map(|point| Some((*point, point.leading()?)));
     let fastest = leading.max_by(|(_, a), (_, b)| a.growth_rate_per_s.total_cmp(&b.growth_rate_per_s));
-    let faster = fastest.filter(|(_, mode)| grows(mode) && !is_near(mode));
+    let faster = fastest.filter(|(_, mode)| mode.grows() && !is_near(mode));
     let faster = faster.map(|found| format!("The fastest growing mode has {}.", in_words(found)));
     let of = format!("{} of the grid", count(points.len(), "point"));
     let near = format!("within {} % of {}", significant(100.0 * NEAR, 2), quantity(near_hz, "Hz"));
     if let Some(found) = nearest(true).filter(|(_, mode)| is_near(mode)) {
         let has =
-            |point: &StabilityPoint| point.stability.modes.iter().any(|mode| is_near(&mode) && grows(mode));
+            |point: &StabilityPoint| point.stability.modes.iter().any(|mode| is_near(&mode) && mode.grows());
         let places = points.iter().filter(|point| has(point)).count();
         let head =
             format!("A mode {near} grows at {places} of {of}. The nearest one has {}.", in_words(found));
@@ -46,18 +46,13 @@ pub fn nearest_in_words<'a>(
         (!is_near(&any.1)).then(|| "Look at what the scene leaves out.".to_owned())
     };
     let head =
-        format!("No known mode {near} grows at any of {of}. The nearest known mode has {}.", in_words(any));
+        format!("No known mode {near} grows at 0 of {of}. The nearest known mode has {}.", in_words(any));
     Some([Some(head), faster, advice].into_iter().flatten().collect::<Vec<_>>().join(" "))
-}
-
-/// Whether a vibration does not decay. A mode on the threshold grows, as in the table.
-fn grows(mode: &ComplexMode) -> bool {
-    mode.growth_rate_per_s >= 0.0
 }
 
 fn in_words((point, mode): (&StabilityPoint, &ComplexMode)) -> String {
     let rate = mode.growth_rate_per_s.abs();
-    let verb = if grows(mode) { "grows" } else { "decays" };
+    let verb = if mode.grows() { "grows" } else { "decays" };
     let is_unsure = mode.growth_rate_mesh_error_per_s.is_some_and(|error| error >= rate);
     let doubt = match (mode.is_converged, is_unsure) {
         (false, _) => " (not converged)",
@@ -99,7 +94,7 @@ mod tests {
         );
         assert_eq!(
             said(&points[..1], 11_000.0),
-            "No known mode within 10 % of 11 kHz grows at any of 1 point of the grid. The nearest known mode has 11 kHz at ω = 20 rpm, μ = 0.2, \
+            "No known mode within 10 % of 11 kHz grows at 0 of 1 point of the grid. The nearest known mode has 11 kHz at ω = 20 rpm, μ = 0.2, \
              where it decays at 50 1/s."
         );
         assert!(said(&points, 20_000.0).ends_with("Look at what the scene leaves out."));

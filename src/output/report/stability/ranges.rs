@@ -65,8 +65,7 @@ pub(in crate::report) struct Known {
 impl Known {
     /// At the points of a series at which no mode grows; at all if there are none.
     pub fn of_stable(points: &[&StabilityPoint]) -> Self {
-        let is_stable =
-            |point: &&&StabilityPoint| point.leading().is_none_or(|mode| mode.growth_rate_per_s < 0.0);
+        let is_stable = |point: &&&StabilityPoint| point.leading().is_none_or(|mode| !mode.grows());
         let stable: Vec<&StabilityPoint> = points.iter().filter(is_stable).copied().collect();
         Self::of(if stable.is_empty() { points } else { &stable })
     }
@@ -150,7 +149,6 @@ pub(super) fn bracket_by_neighbours(onsets: &mut [Onset], leading: &[(f64, Optio
 /// The ranges in which sliding is unstable: where the leading mode of the points grows. Between two points of which one is unstable
 /// the end is where the branches say, if they do, and otherwise where a line through both leading growth rates is zero.
 pub(super) fn intervals(leading: &[(f64, Option<ComplexMode>)], onsets: &[Onset]) -> Vec<Interval> {
-    let grows = |mode: &ComplexMode| mode.growth_rate_per_s >= 0.0;
     let edge = |stable: (f64, Option<ComplexMode>), unstable: (f64, ComplexMode)| -> Edge {
         let Some(mode) = stable.1 else { return Edge::Unknown(unstable.0) };
         let (from, to) = (mode.growth_rate_per_s, unstable.1.growth_rate_per_s);
@@ -173,7 +171,7 @@ pub(super) fn intervals(leading: &[(f64, Option<ComplexMode>)], onsets: &[Onset]
     let mut open: Option<Interval> = None;
     for (index, &(at, mode)) in leading.iter().enumerate() {
         let before = index.checked_sub(1).map(|before| leading[before]);
-        match (mode.filter(grows), &mut open) {
+        match (mode.filter(ComplexMode::grows), &mut open) {
             (Some(mode), None) => {
                 let from = before.map_or(Edge::Outside(at), |stable| edge(stable, (at, mode)));
                 let is_sure = before.is_none_or(|(_, mode)| mode.is_none_or(|mode| mode.is_converged));
@@ -212,7 +210,7 @@ impl Speed {
 
     /// The branches that may be older ones: those that grow at their first point, after another one that still grew at its last.
     pub fn perhaps_older(&self) -> Vec<usize> {
-        let grows = |point: &&BranchPoint| point.mode.growth_rate_per_s >= 0.0;
+        let grows = |point: &&BranchPoint| point.mode.grows();
         let lost = self.branches.iter().filter_map(|branch| branch.points.last().filter(grows));
         let mut lost: Vec<f64> = lost.map(|point| point.mu).collect();
         let mut found = Vec::new();

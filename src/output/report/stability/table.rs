@@ -65,7 +65,7 @@ impl ShownModes {
         let modes: Vec<&ComplexMode> = modes.into_iter().collect();
         let Some(near_hz) = self.near_hz else { return (0..modes.len().min(self.count)).collect() };
         let (mut shown, mut others): (Vec<usize>, Vec<usize>) =
-            (0..modes.len()).partition(|&index| modes[index].growth_rate_per_s >= 0.0);
+            (0..modes.len()).partition(|&index| modes[index].grows());
         let distance = |index: usize| (modes[index].frequency_hz - near_hz).abs();
         others.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
         shown.extend(others.into_iter().take(self.count));
