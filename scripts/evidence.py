@@ -114,11 +114,17 @@ def stamp_again(part, number, count):
     STAMPS.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")
 
 
-def solver_of(own):
-    """The version of the solver of a part, and how many samples of it gave the same with the version of now."""
+def again_in_words(own):
+    """How many samples of a part gave the same with the version of now; empty if none was computed again."""
     found = own.get("again", {})
-    is_of_now = found.get("solver") == solver_version()
-    return f"{own['solver']}" + (f" ({len(found['samples'])} of {found['of']} samples are the same with {found['solver']})" if is_of_now else "")
+    if found.get("solver") != solver_version():
+        return ""
+    return f"version {found['solver']} gives the same for {len(found['samples'])} of {found['of']} samples"
+
+
+def solver_of(own):
+    """The version of the solver of a part, and what the version of now says of it."""
+    return "; ".join(filter(None, [str(own["solver"]), again_in_words(own)]))
 
 
 def collapsed(text):
@@ -162,8 +168,8 @@ def has_changed(part, before, now):
 def origin(part, known):
     own = known[part]
     now = solver_version()
-    version = f"version {solver_of(own)} of the solver" + (f", which is at {now} now" if own["solver"] != now else "")
-    return f"{own['date']}, commit {own['commit']}, {version}"
+    version = f"version {own['solver']} of the solver" + (f", which is at {now} now" if own["solver"] != now else "")
+    return ", ".join([own["date"], f"commit {own['commit']}", "; ".join(filter(None, [version, again_in_words(own)]))])
 
 
 def head(part, text, known):

@@ -175,8 +175,18 @@ fn first_steps() -> String {
 /// Most letters to change from a wrong name of a command to the one that is meant: `rnu`, `stauts`.
 const MOST_CHANGES: usize = 2;
 
-/// An unknown command with the one that it may mean. The usual suggestions miss exchanged letters in short names.
+/// An unknown command with the one that it may mean, and an option with the commands that have it. The usual suggestions miss exchanged
+/// letters in short names.
 fn with_suggestion(mut error: clap::Error) -> clap::Error {
+    if let Some(ContextValue::String(wrong)) = error.get(ContextKind::InvalidArg)
+        && error.get(ContextKind::SuggestedArg).is_none()
+    {
+        let owners = commands_with(wrong);
+        if !owners.is_empty() {
+            let tip = format!("{wrong} is an option of {}", owners.join(", "));
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+    }
     let has_one = error.get(ContextKind::SuggestedSubcommand).is_some();
     if let Some(ContextValue::String(wrong)) = error.get(ContextKind::InvalidSubcommand)
         && !has_one
@@ -191,6 +201,13 @@ fn with_suggestion(mut error: clap::Error) -> clap::Error {
         }
     }
     error
+}
+
+/// The commands that have an option.
+fn commands_with(option: &str) -> Vec<String> {
+    let Some(long) = option.strip_prefix("--") else { return Vec::new() };
+    let has_it = |own: &&clap::Command| own.get_arguments().any(|argument| argument.get_long() == Some(long));
+    Cli::command().get_subcommands().filter(has_it).map(|own| format!("`{}`", own.get_name())).collect()
 }
 
 /// Runs the command and returns its exit code (see `exit`).
