@@ -131,7 +131,7 @@ fn on_a_narrow_track(elements: [usize; 3]) -> JobSpec {
 }
 
 /// Protects: the error of μ\* of steady sliding on a narrow track is within its bound, also where friction falls with the speed, which is
-/// larger far from the axis. The limit is that of a mesh with 5 times the elements, whose own error is 25 times smaller if it is of second
+/// larger far from the axis. The limit is that of a mesh with twice the elements or more, whose own error is a quarter or less if it is of second
 /// order. The bound is the range of friction on the face over the elements, here with the corners of a face of 10 × 10 mm at R = 10 mm.
 #[test]
 fn the_bound_of_sliding_covers_narrow_tracks() {
@@ -151,7 +151,7 @@ fn the_bound_of_sliding_covers_narrow_tracks() {
             let found = solve(&spec, &mut Unobserved).unwrap();
             (found.mu_star, found.sliding_mesh_error.unwrap())
         };
-        let limit = on(10).0;
+        let limit = on(8).0;
         for n in [2, 4] {
             let (mu_star, bound) = on(n);
             let error = (mu_star - limit).abs();

@@ -39,9 +39,11 @@ fn names(columns: &[ExportColumn]) -> Vec<&str> {
 fn every_number_of_a_record_has_a_column() {
     let unsteady = Obstacle::Unsteady { figure: "period".to_owned(), spread: 0.1, drift: 0.2 };
     for obstacle in [unsteady, Obstacle::FewCycles { found: 1, needed: 2 }] {
-        // Modes and windows have tables of their own. Without a steady state there are no numbers that are computed from others.
-        let (obstacle, stability, windows) = (Some(obstacle), None, Vec::new());
-        let mut record = JobRecord { obstacle, stability, windows, ..JobRecord::example() };
+        // Modes and windows have tables of their own. Without a steady state there are no numbers that are computed from others. The error of
+        // steady sliding is in the column `mu_star_mesh_error` of such a job.
+        let (obstacle, stability, windows, sliding_mesh_error) = (Some(obstacle), None, Vec::new(), None);
+        let mut record =
+            JobRecord { obstacle, stability, windows, sliding_mesh_error, ..JobRecord::example() };
         record.start.iter_mut().for_each(|coarser| coarser.modes.clear());
         let mut stored = serde_json::to_value(record).unwrap();
         let mut numbers = BTreeSet::new();

@@ -227,7 +227,8 @@ impl Comparison {
             for scalar in scalars.iter().filter(|scalar| scalar.is_settled(job.row)) {
                 let Some(value) = scalar.value(job.row) else { continue };
                 let Some(reference) = reference_at(curve, x, x_axis, scalar) else {
-                    if position_in(curve, x, x_axis).is_some() {
+                    // That a stable reference has no frequency is said as a contradiction.
+                    if position_in(curve, x, x_axis).is_some() && squeals_at(curve, x, x_axis).is_none() {
                         matches.without_value.push(scalar);
                     }
                     continue;
