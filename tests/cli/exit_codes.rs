@@ -187,6 +187,15 @@ fn jobs_with_too_many_steps() {
     refuses_study(&study.to_string(), &[endless, "(in 4 of 6 jobs, first at beta_r_s = 1, mu = 0.2)"]);
 }
 
+/// Protects: a wrong name of a command has the one that is meant, and an option of another command names this command.
+#[test]
+fn what_is_meant_is_offered() {
+    let folder = Folder::new();
+    refuses(&folder, "stauts", &["'stauts'", "'status'"]);
+    refuses(&folder, "run mine.json --near 11kHz", &["'--near'", "--near is an option of `stability`"]);
+    refuses(&folder, "run mine.json --treads 2", &["'--treads'", "'--threads'"]);
+}
+
 /// Protects: a single job needs a value for every parameter of the grid, and settings are checked as the study is.
 #[test]
 fn settings_of_a_single_job() {
