@@ -81,7 +81,7 @@ fn frequency_hz(text: &str) -> Result<f64, String> {
 /// Computes the modes. If it is interrupted, the tables have the points that are done.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     if let Some(near_hz) = args.near.filter(|near_hz| *near_hz < LEAST_NEAR_HZ) {
-        log(&format!(
+        log(format!(
             "warning: --near is {near_hz} Hz, at which hardly any pin squeals; write '11 kHz' for kilohertz"
         ));
     }
