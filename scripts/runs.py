@@ -39,7 +39,8 @@ def sweep(study, database="docs.db", options=(), fails=False):
         path.write_text(json.dumps(study, indent=2))
     else:
         path = ROOT / study
-    tribosweep("run", str(path), *options, database=database, check=not fails)
+    # The work folder is that of the scripts, and may have the study of an earlier version of the solver.
+    tribosweep("run", str(path), "--replace", *options, database=database, check=not fails)
     return exported(str(path), database)
 
 
