@@ -2,10 +2,10 @@
 
 #![allow(clippy::needless_raw_string_hashes, reason = "the macro writes them")]
 
-use crate::synthetic::{after, partial_study, periodic, report, row};
+use crate::synthetic::{after, done, partial_study, periodic, report, row};
 use expect_test::{expect, expect_file};
 use std::fs;
-use tribosweep_mechanics::analysis::Outcome;
+use tribosweep_mechanics::analysis::{Outcome, Regime};
 use tribosweep_output::report::overview::overview;
 use tribosweep_output::report::sensitivity::{markdown, sensitivities};
 use tribosweep_output::report::{JobRow, RowState, Scalar, write};
@@ -84,6 +84,18 @@ fn indices_read_well() {
     let found = sensitivities(&doubtful, &[Scalar::find("frequency_hz").unwrap()], false);
     let words = markdown(&found);
     assert!(words.contains("15 points") && words.contains("1 job without a value here"), "{words}");
+    // Without a value there are no indices, and of one value there are none, too.
+    let none: Vec<JobRow> = doubtful
+        .iter()
+        .cloned()
+        .map(|row| JobRow { state: done(Outcome::NotPeriodic, Regime::StickSlip, 0.3), ..row })
+        .collect();
+    for (quantity, why) in
+        [("frequency_hz", "no job has a value."), ("mu_star", "it is the same at all points.")]
+    {
+        let words = markdown(&sensitivities(&none, &[Scalar::find(quantity).unwrap()], false));
+        assert!(words.contains(&format!("No PAWN and no first-order index: {why}")), "{words}");
+    }
     // One parameter has all shares, and none is given.
     let alone: Vec<JobRow> = doubtful.into_iter().take(4).collect();
     let words = markdown(&sensitivities(&alone, &[Scalar::find("mu_star").unwrap()], false));

@@ -301,6 +301,7 @@ impl Calibration {
             ));
         }
         words.extend(without_values.filter(|_| !is_mostly_missing));
+        words.extend(self.unused_in_words());
         let [unknown, values] = self.unknown_mesh;
         if unknown > 0 {
             let counts = if unknown == values {
@@ -313,6 +314,25 @@ impl Calibration {
             ));
         }
         words
+    }
+
+    /// Measured values that rule nothing out, because no emulator has enough runs for them; `None` if there are none, or no emulator at all.
+    fn unused_in_words(&self) -> Option<String> {
+        let with_error = || self.data.iter().filter(|own| own.error.is_some());
+        let place = |own: &Datum| {
+            let at: Vec<String> = own.place.iter().map(|(name, value)| assignment(name, value)).collect();
+            if at.is_empty() { own.of.to_owned() } else { format!("{} at {}", own.of, at.join(", ")) }
+        };
+        let unused: Vec<String> = with_error().filter(|own| own.band.is_none()).map(place).collect();
+        let all = with_error().count();
+        (self.nearest.is_none() && !unused.is_empty() && unused.len() < all).then(|| {
+            format!(
+                "{} of {} rule nothing out, because too few runs have such a value: {}.",
+                unused.len(),
+                count(all as u64, "measured value"),
+                unused.join("; ")
+            )
+        })
     }
 
     fn best_in_words(&self, best: &Fit) -> String {
@@ -435,6 +455,27 @@ mod tests {
             "{without}"
         );
         assert!(!with.contains("No run agrees") && with.contains("mu lies between 0.2 and 0.3."), "{with}");
+    }
+
+    /// Protects: a measured value for which too few runs have a value is named, because it rules nothing out.
+    #[test]
+    fn unused_values_are_named() {
+        let datum = |omega: f64, band| Datum {
+            place: vec![("omega_rpm".to_owned(), json!(omega))],
+            of: "mu_star",
+            measured: json!(0.3),
+            error: Some(0.01),
+            best: Value::Null,
+            band,
+        };
+        let own = Calibration {
+            data: vec![datum(50.0, Some([0.2, 0.3])), datum(400.0, None)],
+            points: 20,
+            ..Calibration::default()
+        };
+        let words = own.in_words();
+        let said = "1 of 2 measured values rule nothing out, because too few runs have such a value: mu_star at ω = 400 rpm.";
+        assert!(words.iter().any(|own| own == said), "{words:?}");
     }
 
     /// Protects: data that rule nothing out, because runs have no values, are not read as an answer: this is the first sentence.

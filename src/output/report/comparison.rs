@@ -13,6 +13,7 @@ use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::sensitivity::{Mover, movers};
 use super::view::View;
+use crate::analysis::Outcome;
 use crate::publish::chart::Axis;
 use crate::publish::value;
 use serde_json::Value;
@@ -27,6 +28,8 @@ pub(super) struct Comparison {
     pub compared_squeals: usize,
     /// What a reader must know, one sentence each: inputs that differ, points without a counterpart.
     pub notes: Vec<String>,
+    /// Jobs that are not periodic, and all jobs with a result.
+    pub not_periodic: [usize; 2],
     /// What is not compared, one sentence each: points without a counterpart, and measured points with other studies than the first.
     pub unmatched: Vec<String>,
     /// The study that shows what could move a quantity, and what its parameters do to each quantity.
@@ -107,6 +110,7 @@ impl Comparison {
             contradictions: Vec::new(),
             compared_squeals: 0,
             notes: view.notes.clone(),
+            not_periodic: [0; 2],
             unmatched: Vec::new(),
             movers: None,
             differences: Vec::new(),
@@ -121,6 +125,11 @@ impl Comparison {
                 "measured points are compared with {} alone; name another study first to compare them with that one",
                 comparison.reference
             ));
+        }
+        let jobs = layout.groups.iter().flat_map(|group| &group.jobs);
+        for record in jobs.filter(|job| !job.row.is_measured()).filter_map(|job| job.row.record()) {
+            comparison.not_periodic[0] += usize::from(record.outcome == Outcome::NotPeriodic);
+            comparison.not_periodic[1] += 1;
         }
         let x_axis = layout.x_axis();
         for (index, source) in layout.sources.iter().enumerate().skip(1) {
@@ -228,7 +237,8 @@ impl Comparison {
                 let Some(value) = scalar.value(job.row) else { continue };
                 let Some(reference) = reference_at(curve, x, x_axis, scalar) else {
                     // That a stable reference has no frequency is said as a contradiction.
-                    if position_in(curve, x, x_axis).is_some() && squeals_at(curve, x, x_axis).is_none() {
+                    let is_stable = squeals_at(curve, x, x_axis).is_some_and(|(squeals, _)| !squeals);
+                    if position_in(curve, x, x_axis).is_some() && !is_stable {
                         matches.without_value.push(scalar);
                     }
                     continue;
@@ -366,7 +376,7 @@ impl Comparison {
                     found
                         .combined_error()
                         .map_or_else(|| value::MISSING.to_owned(), |x| found.scalar.error_text(x)),
-                    found.relative().map_or_else(
+                    found.deviation().map_or_else(
                         || value::MISSING.to_owned(),
                         |share| format!("{} %", value::fixed(100.0 * share, 1)),
                     ),
@@ -384,7 +394,8 @@ impl Comparison {
     /// What the tables mean.
     pub fn explanation(&self) -> String {
         format!(
-            "Difference: value minus {}. Error: the known errors of both, combined as the root of the sum of their squares; \
+            "Difference: {} minus a measured value; of another study, that study minus {0}. In per cent it is a share of what is subtracted. \
+             Error: the known errors of both, combined as the root of the sum of their squares; \
              of a simulated μ* the standard error over its cycles, without that of mesh and time step. *: interpolated \
              between the two neighbours on the axis. The values here have more digits than the error of mesh and time step \
              leaves.",
@@ -394,12 +405,9 @@ impl Comparison {
 }
 
 impl Difference {
+    /// How far the simulation is above a measured value; of two studies, how far this one is above the reference.
     pub fn difference(&self) -> f64 {
-        self.value - self.reference
-    }
-
-    pub fn relative(&self) -> Option<f64> {
-        Some(self.difference() / self.reference.abs()).filter(|share| share.is_finite())
+        if self.is_measured { self.reference - self.value } else { self.value - self.reference }
     }
 
     pub fn combined_error(&self) -> Option<f64> {
@@ -440,7 +448,7 @@ impl Matches {
         (values > 0).then(|| {
             format!(
                 "{} of {} in {source} {} compared with nothing: a job of {reference} at this place, or on one side of it, has no such value, \
-                 because it slides steadily or is not periodic",
+                 because it slides steadily, is not periodic, or has modes alone",
                 value::count(values, "value"),
                 scalar.name,
                 if values == 1 { "is" } else { "are" }

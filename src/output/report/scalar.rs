@@ -154,9 +154,14 @@ impl Scalar {
     }
 
     /// Whether the value in a row counts for the range of an axis or of colours. The frequency of a run that is not
-    /// periodic is no frequency of a limit cycle.
+    /// periodic is no frequency of a limit cycle, and an instrument does not measure μ\* of sliding that is unstable.
     pub(super) fn is_settled(&self, row: &JobRow) -> bool {
-        self != FREQUENCY || row.record().is_none_or(|record| record.outcome != Outcome::NotPeriodic)
+        let has_other = match row.record().map(|record| record.outcome) {
+            Some(Outcome::NotPeriodic) => self == FREQUENCY,
+            Some(Outcome::Unstable) => self == MU_STAR,
+            _ => false,
+        };
+        !has_other
     }
 
     /// The value in a row, if it is settled.

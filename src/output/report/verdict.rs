@@ -17,9 +17,8 @@ impl Difference {
     /// How far the simulation is from the measured value, as a share of it; of two studies, how far the other one is from the reference.
     /// None if the value is zero.
     pub(super) fn deviation(&self) -> Option<f64> {
-        let (own, of) =
-            if self.is_measured { (self.reference, self.value) } else { (self.value, self.reference) };
-        Some((own - of) / of.abs()).filter(|share| share.is_finite())
+        let of = if self.is_measured { self.value } else { self.reference };
+        Some(self.difference() / of.abs()).filter(|share| share.is_finite())
     }
 
     /// The combined error as a share of the same value; none if no error is known.
@@ -45,7 +44,15 @@ impl Comparison {
                 self.reference
             )
         });
-        of_quantities.chain(of_squeal).collect()
+        // A mean over no whole number of cycles is no result, however near it is.
+        let of_jobs = (self.not_periodic[0] > 0).then(|| {
+            let [open, all] = self.not_periodic;
+            format!(
+                "The motion is not periodic in {open} of {}; their means count here.",
+                count(all as u64, "job")
+            )
+        });
+        of_quantities.chain(of_squeal).chain(of_jobs).collect()
     }
 
     /// That measured frequencies are far from those of the simulation, as the end of a sentence; `None` if none is.
@@ -76,8 +83,10 @@ impl Comparison {
             1 => "at the one point that is compared".to_owned(),
             several => format!("at all {}", count(several as u64, "point")),
         };
+        let has_error = |one: &&Difference| !one.is_measured || one.error.is_some();
         let judged: Vec<bool> = part
             .iter()
+            .filter(has_error)
             .filter_map(|one| Some(one.deviation()?.abs() <= AGREE * one.error_of_deviation()?))
             .collect();
         let within = judged.iter().filter(|agrees| **agrees).count();
@@ -103,7 +112,9 @@ impl Comparison {
         } else {
             format!("{own} differs from {of} by {} to {}", signed(least), signed(most))
         };
-        let errors = if judged.is_empty() {
+        let errors = if !part.iter().any(|one| has_error(&one)) {
+            "; the errors of the measured values are not given".to_owned()
+        } else if judged.is_empty() {
             String::new()
         } else if deviations.len() == 1 {
             "; not within two standard errors".to_owned()

@@ -20,6 +20,8 @@ const MOST_ELASTIC: f64 = 0.05;
 const FAST: f64 = 0.1;
 /// Change of the clamp's width by the mesh from which on it is named.
 const MOVED: f64 = 0.01;
+/// A run must be so many times as long as what its cycles have to cover, because it does not begin with a limit cycle.
+const SWINGS: f64 = 2.0;
 /// The time step with damping over the one without, below which damping decides about the cost.
 const SHORT_STEP: f64 = 0.5;
 
@@ -135,12 +137,14 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
 fn too_short_for_the_holder(spec: &JobSpec) -> Option<Doubt> {
     let slow = spec.scene.slow_times()?;
     let covered_s = slow.swing_s + slow.relaxation_s;
-    (spec.has_run() && spec.scene.program.is_constant() && spec.run.limit_s < covered_s).then(|| Doubt {
+    let is_short = spec.run.limit_s < SWINGS * covered_s;
+    (spec.has_run() && spec.scene.program.is_constant() && is_short).then(|| Doubt {
         kind: "holder_time",
         fields: owned(&["run.limit_s", "scene.holder.mass_kg", "scene.holder.stiffness_x_n_m", "scene.holder.stiffness_y_n_m"]),
         size: covered_s / spec.run.limit_s,
         message: format!(
-            "the run is at most {} s long, and with its holder the pin takes up to {} s to swing once and to settle, so no run can become periodic",
+            "the run is at most {} s long, and with its holder the pin takes up to {} s to swing once and to settle, so that hardly any run can become \
+             periodic",
             short(spec.run.limit_s),
             short(covered_s)
         ),

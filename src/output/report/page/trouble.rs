@@ -50,11 +50,15 @@ fn failed(row: &JobRow) -> Option<Text> {
 fn not_periodic(row: &JobRow) -> Option<Text> {
     let record = row.record().filter(|record| record.outcome == Outcome::NotPeriodic)?;
     let words = format!(
-        "{}; after {} μ* = {} over {} cycles",
+        "{}; after {} the mean over {} cycles is μ* = {}, whose error is not known",
         trouble::cause(row)?.why,
         value::quantity(record.simulated_s, "s"),
-        MU_STAR.text_with_error(record.mu_star, Some(record.mu_star_se)),
-        record.cycles
+        record.cycles,
+        MU_STAR
+            .text_with_error(record.mu_star, Some(record.mu_star_se))
+            .split(' ')
+            .next()
+            .unwrap_or_default()
     );
     Some(words.into())
 }

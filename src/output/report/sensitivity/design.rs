@@ -63,6 +63,9 @@ pub(super) fn design_of(parameters: &[Parameter], points: &[usize]) -> Design {
             "the points are a grid with gaps: {count} of {sizes} combinations; indices need all of them, or less than a tenth"
         ));
     }
+    if count == 0 {
+        return Design::Unknown("no job has a value".to_owned());
+    }
     if count <= 2 * HARMONICS {
         return Design::Unknown(format!(
             "{count} points are too few: indices need {} or more",

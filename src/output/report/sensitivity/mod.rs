@@ -126,7 +126,10 @@ impl Points<'_> {
             .filter_map(|(at, row)| Some((at, scalar.settled_value(row)?)))
             .collect();
         let y: Vec<f64> = with_value.iter().map(|(_, y)| *y).collect();
-        let basis = self.basis(with_value.iter().map(|(at, _)| *at).collect());
+        let mut basis = self.basis(with_value.iter().map(|(at, _)| *at).collect());
+        if !self.is_morris && y.len() > 1 && is_constant(&y) {
+            basis.design = Design::Unknown("it is the same at all points".to_owned());
+        }
         let mut remarks: Vec<String> = self.doubtful(&basis.points).into_iter().collect();
         let is_alone = self.parameters.len() == 1;
         if let [only] = &*self.parameters
@@ -277,6 +280,15 @@ impl Points<'_> {
         };
         (1..rows.len()).filter_map(effect).collect()
     }
+}
+
+/// Numbers whose range is a smaller share of the largest are one number: what is left is rounding and the end of an iteration.
+const SAME: f64 = 1.0e-6;
+
+fn is_constant(y: &[f64]) -> bool {
+    let [least, most] =
+        y.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], own| [a.min(*own), b.max(*own)]);
+    most - least <= SAME * most.abs().max(least.abs())
 }
 
 /// The first-order index of a parameter of a sample.

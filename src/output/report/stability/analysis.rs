@@ -172,8 +172,12 @@ impl<'a> Analysis<'a> {
         let mut more: IndexMap<usize, String> = IndexMap::new();
         let mut unsure: IndexMap<usize, String> = IndexMap::new();
         for onset in speed.onsets.iter().filter(|onset| Some(onset.branch) != first) {
-            let words =
-                || format!("{} from {}", value::quantity(onset.frequency_hz, "Hz"), value_of(onset.mu));
+            let words = || {
+                let end =
+                    onset.ends.as_ref().map_or_else(String::new, |end| format!(" to {}", value_of(end.at)));
+                let frequency = value::quantity(onset.frequency_hz, "Hz");
+                format!("{frequency} from {}{end}", value_of(onset.mu))
+            };
             let list = if perhaps_older.contains(&onset.branch) { &mut unsure } else { &mut more };
             list.entry(onset.branch).or_insert_with(words);
         }
@@ -381,7 +385,7 @@ mod tests {
         assert_eq!(found.words(speed)[2], "30 kHz");
         assert_eq!(speed.lowest().map(|onset| onset.frequency_hz), Some(30_000.0));
         assert!(
-            found.note(speed).ends_with("1 more mode grows, too: 6 kHz from μ = 0.1"),
+            found.note(speed).ends_with("1 more mode grows, too: 6 kHz from μ = 0.1 to μ = 0.15"),
             "{}",
             found.note(speed)
         );

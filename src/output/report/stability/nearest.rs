@@ -1,7 +1,7 @@
 //! Whether the modes explain a frequency at which a machine squeals.
 
 use crate::analysis::ComplexMode;
-use crate::publish::value::{count, quantity, significant};
+use crate::publish::value::{quantity, significant};
 use crate::report::parameters::assignments;
 use crate::report::stability_point::StabilityPoint;
 
@@ -29,14 +29,21 @@ pub fn nearest_in_words<'a>(
     let fastest = leading.max_by(|(_, a), (_, b)| a.growth_rate_per_s.total_cmp(&b.growth_rate_per_s));
     let faster = fastest.filter(|(_, mode)| mode.grows() && !is_near(mode));
     let faster = faster.map(|found| format!("The fastest growing mode has {}.", in_words(found)));
-    let of = format!("{} of the grid", count(points.len(), "point"));
+    let some = |places: usize| match points.len() {
+        1 => "the only point of the grid".to_owned(),
+        of => format!("{places} of {of} points of the grid"),
+    };
+    let any_of = match points.len() {
+        1 => "the only point of the grid".to_owned(),
+        of => format!("any of {of} points of the grid"),
+    };
     let near = format!("within {} % of {}", significant(100.0 * NEAR, 2), quantity(near_hz, "Hz"));
     if let Some(found) = nearest(true).filter(|(_, mode)| is_near(mode)) {
         let has =
             |point: &StabilityPoint| point.stability.modes.iter().any(|mode| is_near(&mode) && mode.grows());
         let places = points.iter().filter(|point| has(point)).count();
         let head =
-            format!("A mode {near} grows at {places} of {of}. The nearest one has {}.", in_words(found));
+            format!("A mode {near} grows at {}. The nearest one has {}.", some(places), in_words(found));
         return Some([Some(head), faster].into_iter().flatten().collect::<Vec<_>>().join(" "));
     }
     let band_hz = points.iter().map(|point| point.stability.band_hz).fold(0.0, f64::max);
@@ -46,7 +53,7 @@ pub fn nearest_in_words<'a>(
         (!is_near(&any.1)).then(|| "Look at what the scene leaves out.".to_owned())
     };
     let head =
-        format!("No known mode {near} grows at 0 of {of}. The nearest known mode has {}.", in_words(any));
+        format!("No known mode {near} grows at {any_of}. The nearest known mode has {}.", in_words(any));
     Some([Some(head), faster, advice].into_iter().flatten().collect::<Vec<_>>().join(" "))
 }
 
@@ -56,7 +63,8 @@ fn in_words((point, mode): (&StabilityPoint, &ComplexMode)) -> String {
     let is_unsure = mode.growth_rate_mesh_error_per_s.is_some_and(|error| error >= rate);
     let doubt = match (mode.is_converged, is_unsure) {
         (false, _) => " (not converged)",
-        (true, true) => " (within its mesh error)",
+        (true, true) if mode.grows() => ", less than its mesh error: it may decay",
+        (true, true) => ", less than its mesh error: it may grow",
         (true, false) => "",
     };
     let place = assignments(point.parameters.iter());
@@ -94,7 +102,7 @@ mod tests {
         );
         assert_eq!(
             said(&points[..1], 11_000.0),
-            "No known mode within 10 % of 11 kHz grows at 0 of 1 point of the grid. The nearest known mode has 11 kHz at ω = 20 rpm, μ = 0.2, \
+            "No known mode within 10 % of 11 kHz grows at the only point of the grid. The nearest known mode has 11 kHz at ω = 20 rpm, μ = 0.2, \
              where it decays at 50 1/s."
         );
         assert!(said(&points, 20_000.0).ends_with("Look at what the scene leaves out."));
