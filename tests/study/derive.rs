@@ -2,7 +2,7 @@
 //! used are refused at their place.
 
 use serde_json::{Value, json};
-use tribosweep::study::{Changes, Study};
+use tribosweep::study::{Changes, Parameter, Study};
 
 fn parsed(study: &Value) -> Study {
     Study::parse(&study.to_string(), "x.json").unwrap_or_else(|error| panic!("{error}"))
@@ -21,6 +21,8 @@ fn tied(text: &str) -> Value {
 fn ties_follow_their_parameters() {
     let study = parsed(&tied("1.4 * mu"));
     assert_eq!(mu_static(&study), [0.42, 0.56]);
+    // The study gave the value.
+    assert_eq!(study.origin(Parameter::find("mu_static").unwrap()).name(), "study");
     let mut listed = tied("1");
     listed.as_object_mut().unwrap().remove("derive");
     listed["scene"]["contact"]["mu_static"] = 0.42.into();

@@ -46,6 +46,7 @@ impl Study {
             || parameter.name == "beta_r_s" && OF_PIN.iter().any(|field| self.source.gives(field))
             || parameter.name == "alpha_r_per_s" && self.source.gives("damping.second_frequency_hz")
             || parameter.name == "omega_rpm" && self.source.gives("sliding_speed_m_s")
+            || self.source.gives(&format!("derive.{}", parameter.name))
             || DAMPERS.contains(&parameter.name) && self.source.gives("damping.holder_ratio")
         {
             Origin::Study

@@ -172,11 +172,13 @@ impl<'a> Analysis<'a> {
         let mut more: IndexMap<usize, String> = IndexMap::new();
         let mut unsure: IndexMap<usize, String> = IndexMap::new();
         for onset in speed.onsets.iter().filter(|onset| Some(onset.branch) != first) {
+            // Only the changes of the fastest growing mode are narrowed down.
             let words = || {
-                let end =
-                    onset.ends.as_ref().map_or_else(String::new, |end| format!(" to {}", value_of(end.at)));
+                let about = if onset.below.is_some() { "about " } else { "" };
+                let end = onset.ends.as_ref();
+                let end = end.map_or_else(String::new, |end| format!(" to about {}", value_of(end.at)));
                 let frequency = value::quantity(onset.frequency_hz, "Hz");
-                format!("{frequency} from {}{end}", value_of(onset.mu))
+                format!("{frequency} from {about}{}{end}", value_of(onset.mu))
             };
             let list = if perhaps_older.contains(&onset.branch) { &mut unsure } else { &mut more };
             list.entry(onset.branch).or_insert_with(words);
@@ -339,13 +341,13 @@ mod tests {
         let both = of(&[(0.3, &[(11_000.0, 30.0), (10_000.0, 20.0)])]);
         assert_eq!(both, "1 more mode grows, too: 11 kHz from μ = 0.3");
         let other = of(&[(0.3, &[(10_000.0, -30.0)]), (0.4, &[(11_000.0, 30.0), (10_000.0, -40.0)])]);
-        assert_eq!(other, "1 more mode grows, too: 11 kHz from μ = 0.35");
+        assert_eq!(other, "1 more mode grows, too: 11 kHz from about μ = 0.35");
         let beside = note(&[
             (0.1, &[(10_000.0, -10.0), (40_000.0, -10.0)]),
             (0.2, &[(10_000.0, 10.0), (40_000.0, 10.0)]),
             (0.3, &[(11_000.0, 30.0), (40_000.0, 30.0)]),
         ]);
-        assert_eq!(beside, format!("1 more mode grows, too: 40 kHz from μ = 0.15; {lost}"));
+        assert_eq!(beside, format!("1 more mode grows, too: 40 kHz from about μ = 0.15; {lost}"));
     }
 
     /// Protects: a mode that is known from some point on, before which no mode grows, has its threshold between the two, and says that it was not followed. Beside another mode that grows, or at the smallest value, it has none.
@@ -385,7 +387,7 @@ mod tests {
         assert_eq!(found.words(speed)[2], "30 kHz");
         assert_eq!(speed.lowest().map(|onset| onset.frequency_hz), Some(30_000.0));
         assert!(
-            found.note(speed).ends_with("1 more mode grows, too: 6 kHz from μ = 0.1 to μ = 0.15"),
+            found.note(speed).ends_with("1 more mode grows, too: 6 kHz from μ = 0.1 to about μ = 0.15"),
             "{}",
             found.note(speed)
         );

@@ -50,7 +50,8 @@ pub fn nearest_in_words<'a>(
     let advice = if near_hz * (1.0 - NEAR) > band_hz {
         Some(format!("Modes were looked for up to {} only.", quantity(band_hz, "Hz")))
     } else {
-        (!is_near(&any.1)).then(|| "Look at what the scene leaves out.".to_owned())
+        (!is_near(&any.1))
+            .then(|| "Look at what the scene leaves out, such as a holder that moves or rocks.".to_owned())
     };
     let head =
         format!("No known mode {near} grows at {any_of}. The nearest known mode has {}.", in_words(any));
@@ -105,7 +106,10 @@ mod tests {
             "No known mode within 10 % of 11 kHz grows at the only point of the grid. The nearest known mode has 11 kHz at ω = 20 rpm, μ = 0.2, \
              where it decays at 50 1/s."
         );
-        assert!(said(&points, 20_000.0).ends_with("Look at what the scene leaves out."));
+        assert!(
+            said(&points, 20_000.0)
+                .ends_with("Look at what the scene leaves out, such as a holder that moves or rocks.")
+        );
         // The band of the points ends at 50 kHz.
         assert!(said(&points, 80_000.0).ends_with("Modes were looked for up to 50 kHz only."));
         assert_eq!(nearest_in_words(&[point(0.2, &[])], 11_000.0), None);
