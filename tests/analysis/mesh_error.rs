@@ -159,10 +159,35 @@ fn the_bound_of_sliding_covers_narrow_tracks() {
             assert!(error > 1.0e-3 * bound && error <= bound, "{n} elements: {error} and {bound}");
         }
     }
+    // A mesh with one element across the face knows nothing of where the pressure is.
+    let coarsest = solve(&on_a_narrow_track([4, 1, 4]), &mut Unobserved).unwrap();
+    let fine = solve(&on_a_narrow_track([4, 8, 4]), &mut Unobserved).unwrap();
+    assert!((coarsest.mu_star - fine.mu_star).abs() <= coarsest.sliding_mesh_error.unwrap());
     // At the inner corners friction has 45° to the track, and at y = 0 none.
     let range = 0.2 * (1.0 - 0.5_f64.sqrt());
-    let bound = solve(&on_a_narrow_track([4, 8, 4]), &mut Unobserved).unwrap().sliding_mesh_error.unwrap();
-    assert!((bound / (range / 4.0) - 1.0).abs() < 1.0e-12, "{bound}");
+    let is = |record: &JobRecord, bound: f64| {
+        let found = record.mesh_error().unwrap().mu_star;
+        assert!((found / bound - 1.0).abs() < 1.0e-12, "{found} and {bound}");
+    };
+    is(&fine, range / 4.0);
+    is(&coarsest, range);
+    // The modes alone have it where sliding is unstable, too.
+    is(&JobRecord { outcome: Outcome::Unstable, ..fine }, range / 4.0);
+    // Friction that falls with the speed is largest at the inner end of y = 0 and smallest at the outer corners.
+    let mut falling = on_a_narrow_track([4; 3]);
+    let contact = &mut falling.scene.contact;
+    (contact.law, contact.mu_static, contact.speed_m_s) = (FrictionLaw::Exponential, Some(0.4), Some(0.05));
+    let rate = falling.scene.disk.omega_rpm * TAU / 60.0;
+    let mu = |radius_m: f64| 0.2 + 0.2 * (-rate * radius_m / 0.05).exp();
+    let corner_m = 0.015_f64.hypot(0.005);
+    let inner_corner = mu(0.005_f64.hypot(0.005)) * 0.5_f64.sqrt();
+    let least = inner_corner.min(mu(corner_m) * 0.015 / corner_m);
+    is(&solve(&falling, &mut Unobserved).unwrap(), (mu(0.005) - least) / 4.0);
+    // Another mesh may bear on another crest of a wave.
+    let mut wavy = on_a_narrow_track([8, 8, 4]);
+    wavy.scene.pin.base.wave_height_m = Some(1.0e-7);
+    wavy.scene.pin.base.wave_length_m = Some(0.005);
+    is(&solve(&wavy, &mut Unobserved).unwrap(), range);
 }
 
 /// Protects: modes have errors from the same modes on the coarser mesh if their job is to be compared, and keep all bits beside that. A mode

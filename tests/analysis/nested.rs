@@ -105,7 +105,7 @@ fn an_accuracy_ends_on_the_first_mesh_that_has_it() {
     let coarsest = run(&asks([6; 3], 0.2));
     assert_eq!((coarsest.elements, coarsest.accuracy_reached), (Some([6; 3]), Some(false)));
     assert_eq!(coarsest.mesh_error(), Err(UnknownError::NoCoarserMesh));
-    // Nor does it say that sliding is stable on finer ones, although μ* of steady sliding hardly depends on the mesh.
+    // Nor does it say that sliding is stable on finer ones, although the error of μ* is known there.
     let mut stable = JobSpec { accuracy: Some(Accuracy { mu_star: 0.2 }), ..scene() };
     stable.scene.pin.elements = [6; 3];
     stable.scene.contact.mu = 0.1;

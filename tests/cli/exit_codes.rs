@@ -193,6 +193,7 @@ fn what_is_meant_is_offered() {
     let folder = Folder::new();
     refuses(&folder, "stauts", &["'stauts'", "'status'"]);
     refuses(&folder, "run mine.json --near 11kHz", &["'--near'", "--near is an option of `stability`"]);
+    refuses(&folder, "run mine.json --bins 3", &["--bins is an option of `report`, `calibrate`"]);
     refuses(&folder, "run mine.json --treads 2", &["'--treads'", "'--threads'"]);
 }
 

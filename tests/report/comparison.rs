@@ -279,7 +279,7 @@ fn a_frequency_beside_a_job_that_is_not_periodic_is_not_compared() {
     rows.push(JobRow { state, ..measured(10.0, 0.4, 0.3, None) });
     let folder = tempfile::tempdir().expect("a temporary folder");
     let found = write_compared(&report(&rows), folder.path()).expect("the report is written");
-    let said = "1 value of frequency_hz in rig is compared with nothing: a job of simulated at this place, or on one side of it, has no such \
+    let said = "1 value of frequency_hz in rig is compared with nothing: a job of simulated at its place, or on one side, has no such \
                 value, because it slides steadily, is not periodic, or has modes alone";
     let squeal = "whether rig squeals is compared at none of its points: they lie beyond the jobs of simulated, between one that squeals and \
                   one that does not, or at one that is not periodic";

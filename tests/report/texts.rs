@@ -100,7 +100,8 @@ fn indices_read_well() {
     let alone: Vec<JobRow> = doubtful.into_iter().take(4).collect();
     let words = markdown(&sensitivities(&alone, &[Scalar::find("mu_star").unwrap()], false));
     assert!(
-        words.contains("Only mu varies, so everything depends on it alone") && !words.contains("1.000"),
+        words.matches("only mu varies, so everything depends on it alone").count() == 2
+            && !words.contains("0."),
         "{words}"
     );
 }

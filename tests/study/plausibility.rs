@@ -344,10 +344,15 @@ fn a_run_shorter_than_a_swing_of_the_holder_is_named() {
         &[
             "run.limit_s = 0.015: the run is at most 0.015 s long",
             "up to 0.0203 s",
-            "no run can become periodic",
+            "hardly any run can become periodic",
         ],
     );
-    assert_eq!(with(0.03), []);
+    assert_eq!(with(0.03).len(), 1);
+    assert_eq!(with(0.045), []);
+    // Friction that rises with the speed is slow without a holder, too, and there the warning would be wrong.
+    let creeps = r#"{ "scene": { "contact": { "law": "regularised", "mu": 0.8, "speed_m_s": 0.5 }, "pin": { "young_modulus_pa": 5e6 },
+        "load": { "force_n": 5 } }, "run": { "limit_s": 0.0015 } }"#;
+    assert!(warnings(creeps).iter().all(|own| own.kind != "holder_time"), "{:?}", warnings(creeps));
 }
 
 /// Protects: who asks for a mesh error on a mesh that has no coarser one is told so, whether there is a run or only modes.

@@ -178,12 +178,11 @@ const MOST_CHANGES: usize = 2;
 /// An unknown command with the one that it may mean, and an option with the commands that have it. The usual suggestions miss exchanged
 /// letters in short names.
 fn with_suggestion(mut error: clap::Error) -> clap::Error {
-    if let Some(ContextValue::String(wrong)) = error.get(ContextKind::InvalidArg)
-        && error.get(ContextKind::SuggestedArg).is_none()
-    {
+    if let Some(ContextValue::String(wrong)) = error.get(ContextKind::InvalidArg) {
         let owners = commands_with(wrong);
         if !owners.is_empty() {
             let tip = format!("{wrong} is an option of {}", owners.join(", "));
+            error.remove(ContextKind::SuggestedArg);
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
     }

@@ -82,7 +82,7 @@ fn frequency_hz(text: &str) -> Result<f64, String> {
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     if let Some(near_hz) = args.near.filter(|near_hz| *near_hz < LEAST_NEAR_HZ) {
         log(format!(
-            "warning: --near is {near_hz} Hz, at which hardly any pin squeals; write '11 kHz' for kilohertz"
+            "warning: --near is {near_hz} Hz, at which hardly any pin squeals; write '{near_hz} kHz' if kilohertz are meant"
         ));
     }
     let plan = args.study.plan_of_modes()?;

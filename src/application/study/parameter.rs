@@ -79,7 +79,7 @@ const DISK_TIME_STEP: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskTim
 #[rustfmt::skip]
 pub static PARAMETERS: &[Parameter] = &[
     parameter("omega_rpm", "/scene/disk/omega_rpm", Kind::Number, "rotation speed of the disk").symbol("ω"),
-    parameter("mu", "/scene/contact/mu", Kind::Number, "local friction coefficient: that of Coulomb's law, that of fast slip in other laws, and that of the last speed of a table").symbol("μ").plausible(&FRICTION),
+    parameter("mu", "/scene/contact/mu", Kind::Number, "local friction coefficient: the kinetic one, or that of the last speed of a table").symbol("μ").plausible(&FRICTION),
     parameter("load_n", "/scene/load/force_n", Kind::Number, "total normal load").symbol("F"),
     parameter("friction_law", "/scene/contact/law", FRICTION_LAW, "friction law"),
     parameter("mu_static", "/scene/contact/mu_static", Kind::Number, "friction coefficient without slip"),

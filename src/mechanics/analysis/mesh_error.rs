@@ -10,7 +10,7 @@ use super::mode::ComplexMode;
 use super::outcome::Outcome;
 use super::record::JobRecord;
 use crate::solver::Model;
-use crate::spec::{Accuracy, JobSpec};
+use crate::spec::{Accuracy, DiskKind, JobSpec};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -203,21 +203,36 @@ impl JobRecord {
     }
 }
 
+/// Places in each direction of the face at which friction is evaluated. The number is odd, so that the middle of the track is one of them.
+const PLACES: usize = 33;
+
 /// Bound of the error that the mesh makes in μ\* of steady sliding. All nodes in contact slip, so μ\* is a mean of the friction along the
-/// track, weighted with the pressure. A mesh can only have the pressure in the wrong place, and it is wrong by less than an element. So the
-/// bound is the range of friction over the face, over the smaller number of elements across it. On a mesh from a file it is the whole range.
+/// track, weighted with the pressure, and cannot be off by more than the range of this friction over the face. A mesh has the pressure of a
+/// flat base in the wrong place by less than an element, so there the bound is the range over the smaller number of elements across the face.
+/// A base with waves may bear on other crests on another mesh, an elastic disk has a mesh of its own, and a mesh from a file may have elements
+/// of any size: there it is the whole range.
 pub(super) fn error_of_sliding(spec: &JobSpec, model: &Model) -> f64 {
     let drive = drive(spec);
-    let along_track = model.slaves().iter().map(|node| {
-        let [x, y] = node.surface_motion;
+    let along_track = |[x, y]: [f64; 2]| {
         let motion = libm::hypot(x, y);
         let mu = drive.law.steady(motion * drive.rate.abs()).map_or(drive.law.mu(), |[mu, _]| mu);
         if motion == 0.0 { mu } else { mu * y / motion }
-    });
-    let (least, most) =
-        along_track.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), mu| (a.min(mu), b.max(mu)));
-    let elements = spec.scene.pin.own_elements().map_or(1, |[nx, ny, _]| nx.min(ny));
+    };
+    // The motion of the target is linear over the face, so that its places are those of a box of motions.
+    let axis = |axis: usize| {
+        let ends = range(model.slaves().iter().map(move |node| node.surface_motion[axis]));
+        (0..PLACES).map(move |k| ends[0] + (ends[1] - ends[0]) * (k as f64 / (PLACES - 1) as f64))
+    };
+    let [least, most] = range(axis(0).flat_map(|x| axis(1).map(move |y| [x, y])).map(along_track));
+    let pin = &spec.scene.pin;
+    let is_resolved = pin.base.is_flat() && spec.scene.disk.kind == DiskKind::Rigid;
+    let elements = pin.own_elements().filter(|_| is_resolved).map_or(1, |[nx, ny, _]| nx.min(ny));
     (most - least) / elements as f64
+}
+
+/// The smallest and the largest of some numbers.
+fn range(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], own| [least.min(own), most.max(own)])
 }
 
 /// The mode of `modes` that is nearest to a mode, if its frequency is near enough.

@@ -3,11 +3,8 @@
 use super::findings_table::FindingsTable;
 use super::parameters::{self, assignment, in_words};
 use super::row::JobRow;
-use crate::publish::chart::palette::{BLUE, GREY, VERMILLION};
-use crate::publish::chart::{Axis, Chart, Entry, Layer, Marker, Panel, Point, Scale, Shape};
 use crate::publish::table::{Column, FileColumns, Table};
 use crate::publish::value::{self, count};
-use crate::units::name_and_unit;
 use serde_json::{Map, Value, json};
 
 /// What a calibration has found.
@@ -126,6 +123,9 @@ const SAME_VALUE: f64 = 1.0e-7;
 /// Correlations from which on two parameters are not told apart.
 const NOT_TOLD_APART: f64 = 0.8;
 
+/// The share of the ranges from which on nothing is ruled out.
+const NOTHING_RULED_OUT: f64 = 0.99;
+
 /// The share of a distribution from which on the data say nearly nothing about a parameter.
 const NOTHING_SAID: f64 = 0.8;
 
@@ -234,9 +234,15 @@ impl Calibration {
                 "{missing} of {values} values of runs that squeal are missing, because these runs have no period; they rule out nothing."
             )
         });
-        let is_mostly_missing = 2 * missing > values;
-        if let Some(own) = without_values.as_ref().filter(|_| is_mostly_missing) {
-            words.push(format!("There is no usable answer: {own}"));
+        let has_emulator = self.checks.iter().any(|check| check.values > 0);
+        let has_values = self.data.iter().any(|own| own.error.is_some());
+        let is_no_answer = self.nearest.is_none()
+            && self.points > 0
+            && has_values
+            && !has_emulator
+            && self.share >= NOTHING_RULED_OUT;
+        if is_no_answer {
+            words.push("There is no usable answer yet: too few runs have a result for an emulator, so the measured values rule out nothing.".to_owned());
         }
         let all = format!("{} ({})", count(self.points as u64, "point"), count(self.jobs as u64, "job"));
         if let Some(nearest) = &self.nearest {
@@ -249,12 +255,12 @@ impl Calibration {
             let share = value::significant(100.0 * self.share, 2);
             words
                 .push(format!("The data leave {share} % of the ranges of the free parameters, after {all}."));
-            let has_emulator = self.checks.iter().any(|check| check.values > 0);
-            let has_values = self.data.iter().any(|own| own.error.is_some());
             if has_values && !has_emulator {
-                if !is_mostly_missing {
-                    let head = "There is no usable answer yet: too few runs have a result for an emulator, so their values rule out nothing.";
-                    words.insert(0, head.to_owned());
+                if !is_no_answer {
+                    words.push(
+                        "Too few runs have a result for an emulator, so their values rule out nothing yet."
+                            .to_owned(),
+                    );
                 }
             } else if self.runs_that_fit == 0 {
                 // An interval that no run has confirmed is not to be taken for a result.
@@ -300,7 +306,7 @@ impl Calibration {
                 value::fixed(100.0 * check.within_two as f64 / check.values as f64, 0)
             ));
         }
-        words.extend(without_values.filter(|_| !is_mostly_missing));
+        words.extend(without_values);
         words.extend(self.unused_in_words());
         let [unknown, values] = self.unknown_mesh;
         if unknown > 0 {
@@ -379,50 +385,7 @@ impl Calibration {
             "jobs": self.jobs,
         })
     }
-
-    /// The region over each pair of parameters, with the points that were run; none with one parameter.
-    pub(super) fn chart(&self) -> Option<Chart> {
-        let inside = Marker::new(Shape::Circle, BLUE).sized(2.0);
-        let run = Marker::new(Shape::Circle, GREY).sized(3.5).hollow(true);
-        let best = Marker::new(Shape::Star, VERMILLION).sized(7.0);
-        let unit = |free: &Free| value::multiple(name_and_unit(&free.name).1, free.range[1].abs());
-        let scale = |free: &Free| {
-            let (factor, unit) = unit(free);
-            let values: Vec<Value> = free.range.iter().map(|x| Value::from(x / factor)).collect();
-            let name = parameters::symbol(&free.name).unwrap_or(name_and_unit(&free.name).0);
-            let label = if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
-            Scale::new(&label, Axis::for_values(&values, Some(free.is_log)))
-        };
-        let mut panels = Vec::new();
-        for (second, y) in self.free.iter().enumerate() {
-            for (first, x) in self.free.iter().enumerate().take(second) {
-                let points = |of: &mut dyn Iterator<Item = &Vec<f64>>, marker| {
-                    let at = |values: &Vec<f64>| (values[first] / unit(x).0, values[second] / unit(y).0);
-                    Layer::Points(
-                        of.map(|values| Point { at: at(values), error: 0.0, marker, tip: None }).collect(),
-                    )
-                };
-                let mut panel = Panel::new("", scale(x), scale(y));
-                panel.layers.push(points(&mut self.run.iter(), run));
-                panel.layers.push(points(&mut self.inside.iter(), inside));
-                panel.layers.push(points(&mut self.best.iter().map(|best| &best.values), best));
-                panels.push(panel);
-            }
-        }
-        let legend = vec![
-            Entry::marker(inside, "not ruled out"),
-            Entry::marker(run, "runs"),
-            Entry::marker(best, "best run"),
-        ];
-        (!panels.is_empty()).then(|| Chart { panels, legend, ..Chart::default() })
-    }
 }
-
-/// The file of [`Calibration::chart`].
-pub(super) const PAIRS: &str = "calibration.svg";
-
-/// What it shows.
-pub(super) const TITLE: &str = "pairs of the free parameters that are not ruled out";
 
 /// A value of a parameter for a reader.
 fn rounded(x: f64) -> Value {
@@ -478,7 +441,8 @@ mod tests {
         assert!(words.iter().any(|own| own == said), "{words:?}");
     }
 
-    /// Protects: data that rule nothing out, because runs have no values, are not read as an answer: this is the first sentence.
+    /// Protects: data that rule nothing out, because runs have no values, are not read as an answer: this is the first sentence. Where states or
+    /// other values have ruled something out, there is an answer.
     #[test]
     fn no_answer_comes_first() {
         let datum = Datum {
@@ -489,34 +453,25 @@ mod tests {
             best: Value::Null,
             band: None,
         };
-        let of = |missing: usize, checked: usize| {
+        let of = |share: f64, checked: usize| {
             let check = Check { of: "mu_star", values: checked, within_two: checked };
             let own = Calibration {
                 data: vec![datum.clone()],
                 points: 20,
                 jobs: 20,
-                share: 1.0,
+                share,
                 checks: vec![check],
-                without_values: [missing, 20],
+                without_values: [11, 20],
                 ..Calibration::default()
             };
             own.in_words()
         };
-        let few = of(0, 0);
-        assert!(few[0].starts_with("There is no usable answer yet: too few runs"), "{few:?}");
-        for checked in [0, 9] {
-            let missing = of(11, checked);
-            assert!(missing[0].starts_with("There is no usable answer: 11 of 20 values"), "{missing:?}");
-            assert!(
-                !missing[1..].iter().any(|words| words.contains("usable") || words.contains("11 of 20")),
-                "{missing:?}"
-            );
+        let nothing = of(1.0, 0);
+        assert!(nothing[0].starts_with("There is no usable answer yet: too few runs"), "{nothing:?}");
+        for known in [of(0.3, 0), of(1.0, 9), of(0.3, 9)] {
+            assert!(known[0].starts_with("The data leave"), "{known:?}");
+            assert!(known.iter().any(|words| words.starts_with("11 of 20 values")), "{known:?}");
+            assert!(!known.iter().any(|words| words.contains("usable")), "{known:?}");
         }
-        let some = of(10, 9);
-        assert!(
-            some[0].starts_with("The data leave")
-                && some.iter().any(|words| words.starts_with("10 of 20 values")),
-            "{some:?}"
-        );
     }
 }

@@ -207,6 +207,7 @@ impl Comparison {
         let is_own =
             |value: &&Value| layout.by == SOURCE || own.is_null() || value::text(value) == value::text(own);
         let mut place = None;
+        let (mut compared, mut without) = (Vec::new(), Vec::new());
         for (index, curve) in curves {
             let by = &layout.series[*index].value;
             if !is_own(&by) {
@@ -238,11 +239,12 @@ impl Comparison {
                 let Some(reference) = reference_at(curve, x, x_axis, scalar) else {
                     // That a stable reference has no frequency is said as a contradiction.
                     let is_stable = squeals_at(curve, x, x_axis).is_some_and(|(squeals, _)| !squeals);
-                    if position_in(curve, x, x_axis).is_some() && !is_stable {
-                        matches.without_value.push(scalar);
+                    if position_in(curve, x, x_axis).is_some() && !is_stable && !without.contains(scalar) {
+                        without.push(*scalar);
                     }
                     continue;
                 };
+                compared.push(*scalar);
                 let (parameters, texts) = self.parameters(layout, group, by_of_curve, job);
                 let words = [group.caption(), layout.series_name(&layout.series[*index])];
                 self.differences.push(Difference {
@@ -260,6 +262,8 @@ impl Comparison {
                 });
             }
         }
+        // A point of unknown friction has several curves, and one of them is enough.
+        matches.without_value.extend(without.into_iter().filter(|scalar| !compared.contains(scalar)));
         *match place {
             Some(Place::Equal) => &mut matches.equal,
             Some(Place::Between) => &mut matches.between,
@@ -446,12 +450,16 @@ impl Matches {
     fn values_in_words(&self, scalar: &Scalar, source: &str, reference: &str) -> Option<String> {
         let values = self.without_value.iter().filter(|own| **own == scalar).count();
         (values > 0).then(|| {
+            let (verb, place) = if values == 1 { ("is", "its place") } else { ("are", "their places") };
+            let why = if [MU_STAR, FREQUENCY].contains(&scalar) {
+                ", because it slides steadily, is not periodic, or has modes alone"
+            } else {
+                ""
+            };
             format!(
-                "{} of {} in {source} {} compared with nothing: a job of {reference} at this place, or on one side of it, has no such value, \
-                 because it slides steadily, is not periodic, or has modes alone",
+                "{} of {} in {source} {verb} compared with nothing: a job of {reference} at {place}, or on one side, has no such value{why}",
                 value::count(values, "value"),
-                scalar.name,
-                if values == 1 { "is" } else { "are" }
+                scalar.name
             )
         })
     }

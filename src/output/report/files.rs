@@ -1,6 +1,6 @@
 //! The report as a folder of files.
 
-use super::calibration::{self, Calibration};
+use super::calibration::Calibration;
 use super::comparison::Comparison;
 use super::comparison_files;
 use super::explore;
@@ -249,7 +249,7 @@ fn write_findings(folder: &mut Folder, report: &Report) -> Result<(), PublishErr
     let mut tables = report.findings.iter().flat_map(|own| own.tables());
     tables.try_for_each(|found| folder.write_table(&found.table).map(drop))?;
     match report.findings.and_then(|own| own.calibration.as_ref()).and_then(Calibration::chart) {
-        Some(chart) => folder.write_text(calibration::PAIRS, &chart.svg(calibration::TITLE)),
+        Some(chart) => folder.write_text(figure::pairs::FILE, &chart.svg(figure::pairs::TITLE)),
         None => Ok(()),
     }
 }

@@ -135,7 +135,8 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
 
 /// A limit of time in which no run can become periodic: its cycles must cover a swing of the holder.
 fn too_short_for_the_holder(spec: &JobSpec) -> Option<Doubt> {
-    let slow = spec.scene.slow_times()?;
+    // Friction that rises with the speed is slow without a holder, too.
+    let slow = spec.scene.slow_times().filter(|_| !spec.scene.holder.is_ideal())?;
     let covered_s = slow.swing_s + slow.relaxation_s;
     let is_short = spec.run.limit_s < SWINGS * covered_s;
     (spec.has_run() && spec.scene.program.is_constant() && is_short).then(|| Doubt {
@@ -148,7 +149,7 @@ fn too_short_for_the_holder(spec: &JobSpec) -> Option<Doubt> {
             short(spec.run.limit_s),
             short(covered_s)
         ),
-        help: "give a run.limit_s that is several times as long, or check the units of the holder: N/m and kg".to_owned(),
+        help: "give a run.limit_s that is several times as long, or check the units of the holder: N/m and kg, and N m/rad and kg m² of one that rocks".to_owned(),
     })
 }
 

@@ -25,7 +25,7 @@ pub static PLAIN: &[ExportColumn] = &[
     detail("study", Job, "name of the study", |row| row.study.as_str().into()),
     detail("job", Job, "key of the job", |row| row.job.as_str().into()),
     detail("omega_rpm", Job, "rotation speed ω of the disk", |row| row.parameters.omega_rpm().into()),
-    detail("mu", Job, "local friction coefficient μ: that of Coulomb's law, and that of fast slip in other laws", |row| row.parameters.mu().into()),
+    detail("mu", Job, "local friction coefficient μ: the kinetic one, or that of the last speed of a table", |row| row.parameters.mu().into()),
     detail("status", Job, "how far the job is, or how its run ended: pending, running, cancelled, failed, unreadable (its result is damaged or of another version), periodic, decayed, not_periodic, completed, unstable", |row| row.status().into()),
     detail("regime", Result, "contact regime: stable, stick_slip, stick_slip_separation, slip_separation, undecided", |row| of(row, |record| record.regime.name())),
     quantity("mu_star", Result, titled("macroscopic friction coefficient μ*").symbol("μ*").digits(MU_STAR), "macroscopic friction coefficient μ* = ⟨T⟩/⟨F⟩ with the tangential force T at the clamp", |row| of(row, |record| record.mu_star)),

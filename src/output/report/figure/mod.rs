@@ -5,6 +5,7 @@ mod cells;
 mod curves;
 pub(super) mod differences;
 mod edges;
+pub(super) mod pairs;
 mod places;
 pub(super) mod residuals;
 mod shares;

@@ -2,9 +2,9 @@
 
 use crate::publish::page::{Block, Figure, Grid, MOST_DATA, Section, Text};
 use crate::publish::value;
-use crate::report::calibration::{self, Calibration};
+use crate::report::calibration::Calibration;
 use crate::report::comparison::Comparison;
-use crate::report::figure::differences;
+use crate::report::figure::{differences, pairs};
 use crate::report::growth::Findings;
 use crate::report::program::{self, Programs};
 
@@ -98,8 +98,8 @@ pub(super) fn growth(own: &Findings) -> Section {
     }
     if let Some(chart) = own.calibration.as_ref().and_then(Calibration::chart) {
         blocks.push(Block::figure(Figure {
-            file: calibration::PAIRS.to_owned(),
-            svg: chart.svg(calibration::TITLE),
+            file: pairs::FILE.to_owned(),
+            svg: chart.svg(pairs::TITLE),
             caption: REGION.to_owned(),
             data: None,
         }));

@@ -93,7 +93,12 @@ impl Points<'_> {
                     .to_owned(),
             )
         } else {
-            design_of(&self.parameters, &points)
+            match &*self.parameters {
+                [only] => {
+                    Design::Unknown(format!("only {} varies, so everything depends on it alone", only.name))
+                }
+                parameters => design_of(parameters, &points),
+            }
         };
         Basis { points, design }
     }
@@ -131,15 +136,6 @@ impl Points<'_> {
             basis.design = Design::Unknown("it is the same at all points".to_owned());
         }
         let mut remarks: Vec<String> = self.doubtful(&basis.points).into_iter().collect();
-        let is_alone = self.parameters.len() == 1;
-        if let [only] = &*self.parameters
-            && !self.is_morris
-        {
-            remarks.push(format!(
-                "Only {} varies, so everything depends on it alone: there are no shares to compare.",
-                only.name
-            ));
-        }
         let last = |slices: &[Vec<usize>], points: &[usize]| {
             let own: Vec<f64> = points.iter().map(|&at| y[at]).collect();
             pawn(slices, &own)
@@ -150,7 +146,6 @@ impl Points<'_> {
             let levels_of_x = levels(&x);
             let [mut main, mut total] = [None, None];
             match basis.design {
-                _ if is_alone => {}
                 // A parameter of which one value is left decides nothing here.
                 Design::Grid(_) if levels_of_x.len() == 1 => {}
                 Design::Grid(_) => {
