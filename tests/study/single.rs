@@ -93,7 +93,7 @@ fn wrong_overrides_are_all_refused() {
     ];
     let expected = [
         "--set: omega = 3: no such parameter\n  help: did you mean `omega_rpm`?",
-        "--set: mu = .4.: expected a number\n  help: `mu`: local (Coulomb) friction coefficient",
+        "--set: mu = .4.: expected a number\n  help: `mu`: local friction coefficient",
         "--set: elements = 3x4: expected a list of 3",
         "--set: top = free: expected `tied_in_z` or `free_in_z` (did you mean `free_in_z`?)",
         "--set: load_n = null: expected a value",

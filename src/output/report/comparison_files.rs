@@ -80,7 +80,7 @@ fn results<'a>() -> [Column<Line<'a>>; 8] {
         Column::new("error", "that of the quantity", "its error", |of| of.of(|_| None, |own| own.error)),
         Column::new("reference_value", "that of the quantity", "the value of the reference at the same parameters", |of| of.of(|own| Some(as_number(!own)), |own| Some(own.reference))),
         Column::new("reference_error", "that of the quantity", "its error", |of| of.of(|_| None, |own| own.reference_error)),
-        Column::new("difference", "that of the quantity", "value of the reference minus a measured value; of another study, its value minus that of the reference", |of| of.difference()),
+        Column::new("difference", "that of the quantity", "value of the reference minus a measured value; of another study, its value minus that of the reference", Line::difference),
         Column::new("combined_error", "that of the quantity", "root of the sum of the squares of both errors", |of| of.of(|_| None, Difference::combined_error)),
         Column::new("relative_difference", "", "difference over what is subtracted", |of| of.of(|_| None, Difference::deviation)),
         Column::new("interpolated", "", "whether the value of the reference was interpolated: yes or no", |of| if of.is_interpolated() { "yes" } else { "no" }.into()),
