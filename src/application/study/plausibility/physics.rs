@@ -133,7 +133,7 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     found
 }
 
-/// A limit of time in which no run can become periodic: its cycles must cover a swing of the holder.
+/// A limit of time in which hardly any run can become periodic: its cycles must cover a swing of the holder.
 fn too_short_for_the_holder(spec: &JobSpec) -> Option<Doubt> {
     // Friction that rises with the speed is slow without a holder, too.
     let slow = spec.scene.slow_times().filter(|_| !spec.scene.holder.is_ideal())?;
