@@ -3,7 +3,7 @@
 
 `run` solves the scenes on several meshes and keeps the results in docs/evidence/mesh_errors.csv. It takes hours, so it is not a part of other
 runs. `run LEVEL ... --scenes NAME ...` adds some of them; the level `draft` has the mesh 1 with the settings of that preset, and the
-level `1%` asks for an accuracy. `again NUMBER` solves one scene again on two meshes, and ends with 3 if a result is not the kept one.
+level `1%` asks for an accuracy. `modes` and `sliding` fill mode_errors.csv and sliding_errors.csv. `again NUMBER` solves one scene again on two meshes, and ends with 3 if a result is not the kept one.
 
 Without arguments it writes docs/evidence/mesh_errors.md and src/application/study/presets.json from the kept results. `--check` says whether they are up to
 date.
@@ -763,7 +763,7 @@ def page(rows):
     presets = evidence(jobs)
     return f"""# Errors of the mesh
 
-Written by `scripts/mesh_errors.py` from [mesh_errors.csv](mesh_errors.csv) and [mode_errors.csv](mode_errors.csv), which the same script fills from runs; do not edit.
+Written by `scripts/mesh_errors.py` from [mesh_errors.csv](mesh_errors.csv), [mode_errors.csv](mode_errors.csv) and [sliding_errors.csv](sliding_errors.csv), which the same script fills from runs; do not edit.
 
 A result knows the error that its mesh makes if the job ran on a coarser mesh first. `mu_star_mesh_error` and `frequency_mesh_error_hz` are
 absolute bounds, each chosen to cover {percent(0.95, 0)} of the jobs of the scenes below; [other scenes](#scenes-that-took-no-part) are counted apart. They say nothing of the time step, the damping or the model, and `mu_star_se` is the error of the mean

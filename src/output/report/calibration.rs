@@ -241,8 +241,9 @@ impl Calibration {
             && has_values
             && !has_emulator
             && self.share >= NOTHING_RULED_OUT;
+        let too_few = "too few runs have a result for an emulator, so the measured values rule out nothing";
         if is_no_answer {
-            words.push("There is no usable answer yet: too few runs have a result for an emulator, so the measured values rule out nothing.".to_owned());
+            words.push(format!("There is no usable answer yet: {too_few}."));
         }
         let all = format!("{} ({})", count(self.points as u64, "point"), count(self.jobs as u64, "job"));
         if let Some(nearest) = &self.nearest {
@@ -256,12 +257,7 @@ impl Calibration {
             words
                 .push(format!("The data leave {share} % of the ranges of the free parameters, after {all}."));
             if has_values && !has_emulator {
-                if !is_no_answer {
-                    words.push(
-                        "Too few runs have a result for an emulator, so their values rule out nothing yet."
-                            .to_owned(),
-                    );
-                }
+                words.extend((!is_no_answer).then(|| format!("This is from squeal alone: {too_few}.")));
             } else if self.runs_that_fit == 0 {
                 // An interval that no run has confirmed is not to be taken for a result.
                 words.push(

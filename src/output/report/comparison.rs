@@ -13,7 +13,6 @@ use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::sensitivity::{Mover, movers};
 use super::view::View;
-use crate::analysis::Outcome;
 use crate::publish::chart::Axis;
 use crate::publish::value;
 use serde_json::Value;
@@ -28,8 +27,6 @@ pub(super) struct Comparison {
     pub compared_squeals: usize,
     /// What a reader must know, one sentence each: inputs that differ, points without a counterpart.
     pub notes: Vec<String>,
-    /// Jobs that are not periodic, and all jobs with a result.
-    pub not_periodic: [usize; 2],
     /// What is not compared, one sentence each: points without a counterpart, and measured points with other studies than the first.
     pub unmatched: Vec<String>,
     /// The study that shows what could move a quantity, and what its parameters do to each quantity.
@@ -64,6 +61,8 @@ pub(super) struct Difference {
     pub reference: f64,
     pub reference_error: Option<f64>,
     pub interpolated: bool,
+    /// Whether a run behind one of the values is not periodic.
+    pub is_open: bool,
 }
 
 /// A point at which only one of a source and the reference squeals.
@@ -110,7 +109,6 @@ impl Comparison {
             contradictions: Vec::new(),
             compared_squeals: 0,
             notes: view.notes.clone(),
-            not_periodic: [0; 2],
             unmatched: Vec::new(),
             movers: None,
             differences: Vec::new(),
@@ -125,11 +123,6 @@ impl Comparison {
                 "measured points are compared with {} alone; name another study first to compare them with that one",
                 comparison.reference
             ));
-        }
-        let jobs = layout.groups.iter().flat_map(|group| &group.jobs);
-        for record in jobs.filter(|job| !job.row.is_measured()).filter_map(|job| job.row.record()) {
-            comparison.not_periodic[0] += usize::from(record.outcome == Outcome::NotPeriodic);
-            comparison.not_periodic[1] += 1;
         }
         let x_axis = layout.x_axis();
         for (index, source) in layout.sources.iter().enumerate().skip(1) {
@@ -259,6 +252,7 @@ impl Comparison {
                     reference: reference.value,
                     reference_error: reference.error,
                     interpolated: reference.interpolated,
+                    is_open: reference.is_open || job.row.is_open(),
                 });
             }
         }

@@ -12,6 +12,8 @@ pub(super) struct ReferencePoint {
     pub value: f64,
     pub error: Option<f64>,
     pub interpolated: bool,
+    /// Whether a run behind it is not periodic.
+    pub is_open: bool,
 }
 
 /// The curves of the reference in a group by the index of their series: rows from left to right.
@@ -116,7 +118,8 @@ pub(super) fn reference_at(
         _ => (x - left) / (right - left),
     };
     let error = from.error.zip(to.error).map(|(a, b)| ((1.0 - share) * a).hypot(share * b));
-    Some(ReferencePoint { value: from.value + share * (to.value - from.value), error, interpolated: true })
+    let value = from.value + share * (to.value - from.value);
+    Some(ReferencePoint { value, error, interpolated: true, is_open: from.is_open || to.is_open })
 }
 
 fn mean_at(curve: &[(f64, &JobRow)], x: f64, scalar: &Scalar) -> Option<ReferencePoint> {
@@ -130,5 +133,6 @@ fn mean_at(curve: &[(f64, &JobRow)], x: f64, scalar: &Scalar) -> Option<Referenc
         value: values.iter().sum::<f64>() / count,
         error,
         interpolated: false,
+        is_open: here().any(JobRow::is_open),
     })
 }

@@ -147,6 +147,11 @@ impl JobRow {
         self.why.as_deref() == Some("boundary")
     }
 
+    /// Whether it has a run that is not periodic.
+    pub fn is_open(&self) -> bool {
+        self.record().is_some_and(|record| record.outcome == Outcome::NotPeriodic)
+    }
+
     /// Whether this is a measured point and no job.
     pub fn is_measured(&self) -> bool {
         matches!(self.state, RowState::Measured(_))

@@ -44,15 +44,7 @@ impl Comparison {
                 self.reference
             )
         });
-        // A mean over no whole number of cycles is no result, however near it is.
-        let of_jobs = (self.not_periodic[0] > 0).then(|| {
-            let [open, all] = self.not_periodic;
-            format!(
-                "The motion is not periodic in {open} of {}; their means count here.",
-                count(all as u64, "job")
-            )
-        });
-        of_quantities.chain(of_squeal).chain(of_jobs).collect()
+        of_quantities.chain(of_squeal).collect()
     }
 
     /// That measured frequencies are far from those of the simulation, as the end of a sentence; `None` if none is.
@@ -95,9 +87,10 @@ impl Comparison {
             1 => String::new(),
             _ => format!(" ({})", range_in_words(&deviations)?),
         };
+        let open = open_in_words(part).unwrap_or_default();
         if !judged.is_empty() && within == judged.len() && judged.len() == deviations.len() {
             return Some(format!(
-                "{what}: {own} agrees with {of} within two standard errors {points}{range}."
+                "{what}: {own} agrees with {of} within two standard errors {points}{range}.{open}"
             ));
         }
         let half = deviations.len() / 2;
@@ -124,7 +117,7 @@ impl Comparison {
         let one_way = least > 0.0 || most < 0.0;
         let moved = one_way.then(|| self.moved_by(first, middle, own)).flatten().unwrap_or_default();
         let nearest = nearest_curve(part).unwrap_or_default();
-        Some(format!("{what}: {deviates}{errors}.{moved}{nearest}"))
+        Some(format!("{what}: {deviates}{errors}.{open}{moved}{nearest}"))
     }
 
     /// The parameters that could bring a quantity nearer, in a sentence. `deviation` is how far it is away.
@@ -169,6 +162,17 @@ impl Comparison {
             }
         })
     }
+}
+
+/// At how many points a mean is one over no whole number of cycles, which is no result however near it is, in a sentence; `None` if at none.
+fn open_in_words(part: &[Difference]) -> Option<String> {
+    let open = part.iter().filter(|one| one.is_open).count();
+    let at = match part.len() {
+        1 => "there".to_owned(),
+        all if open == all => "at any of them".to_owned(),
+        _ => format!("at {open} of them"),
+    };
+    (open > 0).then(|| format!(" The motion is not periodic {at}."))
 }
 
 /// Of several curves that the same measured points are compared with, such as those of several μ, the one that is nearest, in a sentence. The

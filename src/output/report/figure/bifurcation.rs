@@ -2,7 +2,6 @@
 //! has N/F = 1 and no amplitude; a limit cycle has two values of N/F and an amplitude.
 
 use super::places::{self, Place};
-use crate::analysis::Outcome;
 use crate::publish::chart::palette::GREY;
 use crate::publish::chart::{Axis, Chart, Entry, Guide, Layer, Marker, Panel, Pen, Point, Scale, Shape};
 use crate::publish::value;
@@ -74,7 +73,7 @@ pub(super) fn draw(layout: &Layout, group: &Group) -> Chart {
 
 /// Whether a job has a result and did not become periodic.
 fn is_hollow(place: &Place) -> bool {
-    place.row.record().is_some_and(|record| record.outcome == Outcome::NotPeriodic)
+    place.row.is_open()
 }
 
 impl Kind {

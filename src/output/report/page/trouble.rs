@@ -54,11 +54,7 @@ fn not_periodic(row: &JobRow) -> Option<Text> {
         trouble::cause(row)?.why,
         value::quantity(record.simulated_s, "s"),
         record.cycles,
-        MU_STAR
-            .text_with_error(record.mu_star, Some(record.mu_star_se))
-            .split(' ')
-            .next()
-            .unwrap_or_default()
+        MU_STAR.text(record.mu_star)
     );
     Some(words.into())
 }

@@ -74,8 +74,7 @@ pub(in crate::report) fn in_words<'a>(
     open: bool,
 ) -> Option<String> {
     let rows: Vec<&JobRow> = rows.into_iter().filter(|row| row.record().is_some()).collect();
-    let is_open =
-        |row: &JobRow| open && row.record().is_some_and(|record| record.outcome == Outcome::NotPeriodic);
+    let is_open = |row: &JobRow| open && row.is_open();
     let is_doubted = |row: &&&JobRow| is_open(row) || DOUBTS.iter().any(|doubt| (doubt.why)(row).is_some());
     let doubted = rows.iter().filter(is_doubted).count();
     let not_periodic = ("the motion is not periodic", rows.iter().filter(|row| is_open(row)).count());
