@@ -289,6 +289,13 @@ fn a_frequency_beside_a_job_that_is_not_periodic_is_not_compared() {
         mu_star,
         "μ*: simulated is 3.3 % above rig at the one point that is compared; the errors of the measured values are not given. The motion is not periodic there."
     );
+    // Another job, beside no measured point, does not count.
+    for (at, outcome) in [(0, Outcome::NotPeriodic), (1, Outcome::Periodic)] {
+        let RowState::Done(record) = &mut rows[at].state else { panic!("a result") };
+        record.outcome = outcome;
+    }
+    let found = write_compared(&report(&rows), folder.path()).expect("the report is written");
+    assert!(!found.verdicts.iter().any(|words| words.contains("not periodic")), "{:?}", found.verdicts);
     // An instrument does not measure μ* of sliding that is unstable.
     let RowState::Done(record) = &mut rows[1].state else { panic!("a result") };
     record.outcome = Outcome::Unstable;
